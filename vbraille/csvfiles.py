@@ -9,9 +9,13 @@ import re
 import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.files import cell_text
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 SEPARATORS = ",;\t"
 _UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
@@ -59,8 +63,8 @@ def read_csv(path: str | Path) -> Sheet:
     return parse_csv(data, str(path))
 
 
-def parse_csv(data: bytes, name: str) -> Sheet:
-    """Read a table with a first row of names.
+def parse_csv(data: bytes, name: str, columns: Sequence[str] = ()) -> Sheet:
+    """Read a table with a first row of names, unless they are given.
 
     Text is UTF-8, UTF-16 with its mark, or else Windows-1252. Cells are separated by commas,
     semicolons or tabs; a first line such as ``sep=;`` says by which. Blanks around a cell go, and a
@@ -93,6 +97,8 @@ def parse_csv(data: bytes, name: str) -> Sheet:
             line = skipped + reader.line_num + 1
     except csv.Error as error:
         raise InputError(f"{name}: line {line} has a cell that does not end: {error}") from None
+    if columns:
+        found.insert(0, (0, [*columns]))
     if not found:
         raise InputError(f"{name} is empty; give a table whose first row names its columns")
     _, header = found[0]
@@ -109,8 +115,7 @@ def parse_csv(data: bytes, name: str) -> Sheet:
             )
         cells += [""] * (len(header) - len(cells))
         rows.append([cells[n] for n in kept])
-    columns = tuple(header[n] for n in kept)
-    return Sheet(name, columns, rows, [line for line, _ in found[1:]])
+    return Sheet(name, tuple(header[n] for n in kept), rows, [line for line, _ in found[1:]])
 
 
 def _decode(data: bytes) -> str:

@@ -6,6 +6,7 @@ import difflib
 import math
 import re
 import tomllib
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import msgspec
@@ -24,7 +25,7 @@ _PART = r"""(?:[\w-]+|"[^"]*"|'[^']*')"""
 _NAME = rf"{_PART}(?:\s*\.\s*{_PART})*"
 _HEADER = re.compile(rf"\s*(\[\[?)\s*({_NAME})\s*\]")
 _KEY = re.compile(rf"\s*({_NAME})\s*=")
-_UNIT = re.compile(r"_(?:(?:mm|deg)(?:_s)?|hz)$")
+_UNIT = re.compile(r"_(?:(?:mm|deg)(?:_s)?|hz|s)$")
 _DEEP = re.compile(r"(?:[\w-]++[ \t]*+\.[ \t]*+){100}")
 _STEP = re.compile(r"\.([\w-]+)|\[(\d+)\]")
 _WORDS = {
@@ -121,6 +122,7 @@ class TomlFile:
             return None
         return value
 
+    @cached_property
     def lines(self) -> dict[Path, int]:
         """Lines of tables and keys, from 1, by the paths that lead to them."""
         return lines_of(self.text)
@@ -162,6 +164,15 @@ def read_toml(text: str, kind: type[Kind], where: str) -> Kind:
 def located(text: str, where: str, error: WrongValue) -> InputError:
     """Return the error of a wrong value with the file and the line."""
     return TomlFile(text, where).refused(error.path, error.problem)
+
+
+def words_of(key: str) -> str:
+    """Words of a key, without its unit.
+
+    >>> words_of("wave_angle_deg")
+    'wave angle'
+    """
+    return _UNIT.sub("", key).replace("_", " ")
 
 
 def which(name: str, names: Iterable[str]) -> str:
@@ -220,8 +231,7 @@ def _leaves(value: object, path: Path) -> Iterator[tuple[Path, object]]:
 def _key_said(problem: str, table: Iterable[str]) -> Path:
     """Key of a table whose words, without its unit, begin a problem; empty if none does."""
     for key in sorted(table, key=len, reverse=True):
-        words = _UNIT.sub("", key).replace("_", " ")
-        if re.match(rf"{re.escape(words)}(?!\w)", problem.replace("_", " ")):
+        if re.match(rf"{re.escape(words_of(key))}(?!\w)", problem.replace("_", " ")):
             return (key,)
     return ()
 

@@ -277,6 +277,23 @@ def test_figures_6_7_and_3_14(tmp_path):
     assert table.loc[0.5, "share_sd"] > 0 == table.loc[5.0, "share_sd"]
 
 
+def test_reading_patterns_are_counted_and_drawn_as_figure_3_15(tmp_path):
+    seen = {"AB": ["one pass", "one pass", "re-scan"], "CD": ["two passes", "one pass", "in part"]}
+    rows = [
+        {"participant": person, "presented": "ac", "answered": "ac", "pattern": pattern}
+        | {"speed_right_mm_s": 60.0}
+        for person, patterns in seen.items()
+        for pattern in patterns
+    ]
+    analysis = analysed(rows, tmp_path)
+    table = analysis.tables["patterns"].set_index("participant")
+    assert table.loc["AB", ["one pass", "re-scan", "two passes"]].to_list() == [2, 1, 0]
+    assert table.loc["CD", "speed_right_mm_s"] == 60
+    analysis.write(tmp_path / "report")
+    drawn = (tmp_path / "report/figures/patterns.svg").read_text(encoding="utf-8")
+    assert all(f"<!-- {text} -->" in drawn for text in ("re-scan", "AB, all", "strings"))
+
+
 def test_moving_average_of_figure_3_14(tmp_path):
     rows = [
         {"participant": "AB", "presented": "ac", "answered": "ac" if k < 40 else "aa"}

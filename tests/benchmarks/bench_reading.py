@@ -106,7 +106,7 @@ def _frame() -> Result:
             changed = 0
             while not changed:
                 ticks = device.engine.poll()
-                new = ticks[(ticks["line"] == reader.surface.number)
+                new = ticks[(ticks["line"] == reader.number)
                             & (ticks["flags"] & int(Flag.CHANGED) > 0)]  # fmt: skip
                 changed = int(new["time_ns"][0]) if new.size else 0
                 time.sleep(0.001)
@@ -117,7 +117,7 @@ def _frame() -> Result:
 
 
 def _search() -> Iterator[Result]:
-    from vbraille.reading.search import find_after, find_before, pattern_for
+    from vbraille.reading.searching import find_after, find_before, pattern_for
 
     paragraph = Path(TEXT).read_text(encoding="utf-8")
     text = (paragraph * (5_000_000 // len(paragraph) + 1))[:5_000_000] + LAST

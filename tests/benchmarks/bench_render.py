@@ -119,7 +119,7 @@ def page_against_line(random: np.random.Generator) -> tuple[float, float]:
 
     def ticks_of(program: Program) -> Callable[[], object]:
         state = LoopState(display, 1000.0, 0)
-        state.want(program, 1)
+        state.show(program, 1)
         times_ns = np.repeat(n[:, None] * 1_000_000, 2, axis=1)
 
         def block() -> None:

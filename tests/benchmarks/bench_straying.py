@@ -18,7 +18,7 @@ from tests.benchmarks.timing import Result
 from vbraille.devices.events import HandDone
 from vbraille.engine.batch import BatchEngine
 from vbraille.render import STRESS2, STRESS2_8X8, Straying, Tuning
-from vbraille.simulation.hand import Drift, Sweep, read_lines
+from vbraille.simulation.hand import Sweep, drifting, read_lines
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.steering import ReadPage
 
@@ -42,12 +42,13 @@ class Drifting:
     """A hand at constant speed that strays so far from each line, without turning."""
 
     def __init__(self, stray: float, seed: int) -> None:
-        self._drift = Drift(np.random.default_rng(seed), stray, 0.0)
+        self._stray, self._random = stray, np.random.default_rng(seed)
         self.read_line = Sweep(40.0).read_line
 
     def read_page(self, area: Area) -> Motion:
         """Motion over a page."""
-        return read_lines(self.read_line, area, self._drift)
+        motion = read_lines(self.read_line, area)
+        return drifting(motion, self._random, self._stray * area.pitch_mm, 0.0)
 
 
 def plane(model: Model, straying: Straying) -> Model:

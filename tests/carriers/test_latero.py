@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from tests.tiers import by_tier, examples
 from vbraille.carriers import latero
-from vbraille.devices.latero.conversation import WHERE
+from vbraille.devices.latero.device import WHERE
 from vbraille.errors import InputError
 
 COUNTS = st.integers(0, 2**32 - 1)
@@ -24,11 +24,10 @@ def test_reset_pose_has_the_joints_that_the_client_finds():
 
 
 def test_reset_is_at_the_lower_left_with_the_third_arm_straight_up_from_the_array():
-    first, second, _ = latero.RESET_JOINTS
-    arms = latero.ARMS.arms
-    elbow_x, elbow_y = arms.forward(first, second)
-    # On the tray x grows to the right and y towards the reader: see `pose_at`.
-    elbow = latero.ROOT_X_MM - elbow_x, latero.ROOT_Y_MM + elbow_y
+    elbow = latero.ROOT_X_MM, latero.ROOT_Y_MM
+    for arm_mm, angle in zip(latero.ARMS_MM[:2], np.cumsum(latero.RESET_JOINTS)[:2], strict=True):
+        # On the tray x grows to the right and y towards the reader: see `pose_at`.
+        elbow = elbow[0] - arm_mm * math.cos(angle), elbow[1] + arm_mm * math.sin(angle)
     assert latero.RESET == (0.0, latero.HEIGHT_MM, 0.0)
     assert elbow == pytest.approx((0.0, latero.HEIGHT_MM - 62.7), abs=1e-9)
     said = "lower left one, with its third arm straight up: from the array it goes straight away"

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.reading.bench import Reading
-from vbraille.reading.search import find_after, find_before, hits_between, pattern_for
+from vbraille.reading.searching import find_after, find_before, hits, pattern_for
 
 LETTERS = st.text("abcéÉàœ'’-–  .xX", min_size=1, max_size=6).filter(str.strip)
 
@@ -30,7 +30,7 @@ def test_forward_and_backward_give_the_same_hits(text, wanted):
     while (hit := find_after(pattern, text, at)) is not None:
         forward.append(hit)
         at = pattern.search(text, hit).end()
-    assert forward == hits_between(pattern, text, 0, len(text))
+    assert forward == hits(pattern, text, 0, len(text))
     last = find_before(pattern, text, len(text))
     assert last == (forward[-1] if forward else None)
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from vbraille.feeling.index import SceneIndex
-from vbraille.feeling.loading import load_scene
+from vbraille.pictures.index import SceneIndex
+from vbraille.pictures.loading import load_scene
 from vbraille.render import MODELS
 from vbraille.render.compiling import SceneMap
 from vbraille.scene.bounds import around

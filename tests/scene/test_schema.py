@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.scene.test_reading import REFUSED
-from vbraille.scene.reading import SceneFile, gather
+from vbraille.scene.reading import SceneFile
 from vbraille.scene.schema import scene_schema, schema_text, summary, tables_of, told
 from vbraille.scene.stock import stock_text
 
@@ -59,7 +59,6 @@ def validator():
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_sample_scenes_are_right_by_an_independent_validator(validator, path):
     validator.validate(tomllib.loads(path.read_text("utf-8")))
-    gather(path)
 
 
 def test_the_bank_is_right_by_an_independent_validator(validator):

@@ -109,9 +109,9 @@ def test_the_text_has_one_thing_on_a_line_and_nothing_that_is_as_usual():
         [[elements]]
         kind = "circle"
         id = "sun"
+        amplitude = 0.5
         center_mm = [50.5, -4]
         radius_mm = 0.1
-        amplitude = 0.5
 
         [elements.stroke]
         width_mm = 6
@@ -119,7 +119,6 @@ def test_the_text_has_one_thing_on_a_line_and_nothing_that_is_as_usual():
 
         [[elements]]
         kind = "group"
-        operation = "overwrite"
         inverted = true
 
         # Line 7.

@@ -4,7 +4,7 @@ import msgspec
 import pytest
 
 from vbraille.errors import InputError
-from vbraille.feeling.loading import load_scene
+from vbraille.pictures.loading import load_scene
 from vbraille.render.braille.models import STRESS2
 from vbraille.scene.patterns import (
     Circle,

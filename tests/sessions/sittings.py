@@ -28,7 +28,7 @@ class Person:
 
     def __init__(self, said, script):
         self.said, self.script = said, list(script)
-        self.seen = self.waited = 0
+        self.seen, self.waited = len(said), 0
 
     def watch(self, _key):
         return any(line is KEY for _, line in self.script)

@@ -20,7 +20,8 @@ class Bench:
     """A carriage, looked at each millisecond."""
 
     def __init__(self, hand=None, travel_mm=TRAVEL_MM):
-        self.carriage = Carriage(hand or Sweep(100.0), SPAN_MM, travel_mm)
+        display = replace(STRESS2.display, travel_mm=travel_mm)
+        self.carriage = Carriage(display, hand or Sweep(100.0))
         self.now_us = 5_000_000
 
     def ways(self, seconds):
@@ -84,23 +85,6 @@ def test_it_goes_no_further_than_its_stops():
     assert (ways.min(), ways.max()) == (0.0, 40.0)
 
 
-def test_it_crosses_the_mark_and_comes_back_before_it_sets_out(bench):
-    bench.carriage.cross(10.0, bench.now_us)
-    bench.carriage.set_out()
-    ways = bench.ways(0.088)
-    assert ways.max() == pytest.approx(11.0)
-    assert ways[-1] == pytest.approx(0.0, abs=1e-6)
-    assert bench.ways(1.002)[-1] == pytest.approx(100.0, abs=0.3)
-
-
-def test_it_crosses_the_mark_once_however_often_it_is_told(bench):
-    bench.carriage.cross(10.0, bench.now_us)
-    bench.ways(0.04)
-    bench.carriage.cross(10.0, bench.now_us)
-    bench.ways(0.05)
-    assert not bench.ways(0.1).any()
-
-
 def test_going_back_it_waits_at_the_stop_to_be_told_again(bench):
     bench.carriage.set_out()
     bench.ways(1.001)
@@ -127,7 +111,7 @@ def test_told_again_on_the_way_back_it_goes_to_the_stop_first(bench):
 # Two axes
 
 
-DISPLAY = replace(STRESS2.display, height_mm=65.0, turns=True)
+DISPLAY = replace(STRESS2.display, travel_mm=TRAVEL_MM, height_mm=65.0, turns=True)
 
 
 def places(carriage, seconds, begun_us=0):
@@ -138,8 +122,8 @@ def places(carriage, seconds, begun_us=0):
 
 
 def made(hand, **axes):
-    given = {"height_mm": 65.0, "turns": True, "area": area_of(DISPLAY, 10.0)} | axes
-    return Carriage(hand, SPAN_MM, TRAVEL_MM, **given)
+    display = replace(DISPLAY, **axes)
+    return Carriage(display, hand, area_of(DISPLAY, 10.0))
 
 
 def test_the_page_is_what_fits_on_the_surface():

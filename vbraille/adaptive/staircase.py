@@ -10,18 +10,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from hashlib import sha256
-from typing import NamedTuple
 
 import numpy as np
 
 PLACES = 9
 
 
-class Asked(NamedTuple):
-    """A level that was shown, and whether the answer was right."""
-
-    level: float
-    right: bool
+Asked = tuple[float, bool]  # a level that was shown, and whether the answer was right
 
 
 @dataclass(frozen=True)
@@ -71,23 +66,22 @@ class Climb:
         """Tell whether it has turned as often as it shall."""
         return self.rule.reversals is not None and len(self.turned) >= self.rule.reversals
 
-    def take(self, asked: Asked) -> None:
-        """Move by an answer."""
+    def take(self, level: float, right: bool) -> None:
+        """Move by an answer to the level that was shown."""
         rule = self.rule
-        self.level = asked.level  # what was shown counts
-        self._running = self._running + 1 if asked.right == self._last else 1
-        self._last = asked.right
-        if self._running < (rule.right if asked.right else rule.wrong):
+        self.level = level
+        self._running = self._running + 1 if right == self._last else 1
+        self._last = right
+        if self._running < (rule.right if right else rule.wrong):
             return
         self._running = 0
-        if self._harder not in (None, asked.right):
-            self.turned.append(self.level)
-        self._harder = asked.right
+        if self._harder not in (None, right):
+            self.turned.append(level)
+        self._harder = right
         size = rule.steps[min(len(self.turned), len(rule.steps) - 1)]
-        size *= 1.0 if asked.right else rule.easier
-        down = asked.right == rule.harder_is_less
-        moved = round(self.level + (-size if down else size), PLACES)
-        self.level = min(max(moved, rule.least), rule.most)
+        size *= 1.0 if right else rule.easier
+        moved = level - size if right == rule.harder_is_less else level + size
+        self.level = min(max(round(moved, PLACES), rule.least), rule.most)
 
 
 class Staircases:
@@ -113,9 +107,9 @@ class Staircases:
     def climbs(self, history: Sequence[Asked]) -> list[Climb]:
         """Return the staircases after some answers."""
         climbs = [Climb(rule, rule.start) for rule in self._rules]
-        for number, asked in enumerate(history):
+        for number, answered in enumerate(history):
             # An answer that was corrected late may leave one more than the staircases wanted.
-            (self._drawn(number, climbs) or climbs[0]).take(asked)
+            (self._drawn(number, climbs) or climbs[0]).take(*answered)
         return climbs
 
     def estimate(self, history: Sequence[Asked]) -> tuple[float, int] | None:

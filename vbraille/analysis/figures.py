@@ -15,6 +15,7 @@ from pandas import DataFrame, Series
 
 from vbraille.analysis.measures import LOGS, SHARES
 from vbraille.analysis.primary import plain
+from vbraille.analysis.tables import CELL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -137,6 +138,13 @@ def errors(table: DataFrame) -> Figure:
     return _bars(Series(kinds), {"": 100 * shown["share"]}, "dots", "of all errors (%)")
 
 
+def patterns(table: DataFrame) -> Figure:
+    """Draw how many strings were read in each pattern, figure 3.15."""
+    kinds = [name for name in table if name not in CELL and not name.startswith("speed_")]
+    parts = {name: table[name] for name in kinds}
+    return _bars(table[CELL].agg(", ".join, axis=1), parts, "participant, condition", "strings")
+
+
 def choices(table: DataFrame) -> Figure:
     """Draw how often each value was chosen, figure 3.12."""
     shares = {"": 100 * table["share"]}
@@ -174,6 +182,7 @@ DRAWN = {
     "dots": dots,
     "errors": errors,
     "over_time": over_time,
+    "patterns": patterns,
     "choices": choices,
     "levels": levels,
     "answers_names": answers,
@@ -199,8 +208,7 @@ def draw(result: Result | None, tables: dict[str, DataFrame]) -> dict[str, bytes
 def _content(figure: Figure, form: str) -> bytes:
     content = io.BytesIO()
     when = {"Date": None} if form == "svg" else None
-    dpi = 300 if form == "png" else 150
-    figure.savefig(content, format=form, metadata=when, bbox_inches="tight", dpi=dpi)
+    figure.savefig(content, format=form, metadata=when, bbox_inches="tight", dpi=300)
     return content.getvalue()
 
 

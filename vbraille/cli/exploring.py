@@ -7,6 +7,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from vbraille.cli.build import build_model
 from vbraille.cli.printing import say
 from vbraille.cli.settings import given, settings_of
 from vbraille.devices.registry import check_actuators, check_height, check_travel
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.reading.explored import Explored
     from vbraille.render import Model
-    from vbraille.translate import BrailleTable
 
 
 @dataclass(slots=True)
@@ -65,19 +65,23 @@ class Equipment:
         for output in self.outputs:
             output.say(sentence)
 
-    def speak(self, language: str) -> None:
-        """Have all that is said spoken, too."""
-        self.outputs.append(Behind("speech", lambda: Speech(language), self.outputs[0].say))
-        self.stack.callback(self.outputs[-1].close)
+    def start(
+        self, ctx: click.Context, model: Model, *, language: str = "en", table: Any = None
+    ) -> None:
+        """Drive the device; all that is said is spoken, or on pins, too, as options ask."""
+        self.device.start(model)
+        console, chosen = self.outputs[0], ctx.params
+        if chosen["speech"]:
+            self.outputs.append(Behind("speech", lambda: Speech(language), console.say))
+            self.stack.callback(self.outputs[-1].close)
+        if chosen.get("also"):
+            from vbraille.reading.pins import Pins
+            from vbraille.translate import choose_table
 
-    def add_pins(self, spec: str, table: BrailleTable) -> None:
-        """Have a conventional display show what is under the hand, or what was said."""
-        from vbraille.reading.pins import Pins
-
-        pins = Pins(spec, table, self.outputs[0].say)
-        self.stack.callback(pins.close)
-        self.outputs.append(pins)
-        self.sources.append(pins)
+            pins = Pins(chosen["also"], table or choose_table(), console.say)
+            self.stack.callback(pins.close)
+            self.outputs.append(pins)
+            self.sources.append(pins)
 
     def explore(self, ctx: click.Context, what: Explored, *, own: bool = False) -> None:
         """Explore until there is no more, or a person ends it."""
@@ -169,6 +173,8 @@ def _cues(keyboard: Keyboard) -> str:
 def find_model(ctx: click.Context, device: ReadingDevice, asked: Model) -> Model:
     """Model of the device that is there: the one that was asked for, or the one like it.
 
+    It has the style that the options say.
+
     Raises
     ------
     VbrailleError
@@ -177,14 +183,18 @@ def find_model(ctx: click.Context, device: ReadingDevice, asked: Model) -> Model
     """
     display = device.find()
     if is_simulated(ctx.params["device"]):
-        return replace(asked, display=display)
-    if (travel_mm := ctx.params.get("travel")) is not None:
-        check_travel(display, travel_mm)
-    check_height(display, ctx.params.get("height"))
-    if ctx.params.get("model"):
-        check_actuators(display, asked.display)
-        return replace(MODELS[ctx.params["model"]], display=display)
-    return model_of(display)
+        model = replace(asked, display=display)
+    else:
+        if (travel_mm := ctx.params.get("travel")) is not None:
+            check_travel(display, travel_mm)
+        check_height(display, ctx.params.get("height"))
+        model = model_of(display)
+        if ctx.params.get("model"):
+            check_actuators(display, asked.display)
+            model = replace(MODELS[ctx.params["model"]], display=display)
+    if "profile" not in ctx.params:  # of a command whose options say how braille is shown
+        return model
+    return build_model(ctx, model, display.travel_mm)
 
 
 def say_summary(device: ReadingDevice, *parts: str, speed: bool = False) -> None:

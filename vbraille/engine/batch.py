@@ -12,7 +12,7 @@ import numpy as np
 
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import LocalEngine
-from vbraille.engine.ticks import POSE_THETA, POSE_X, POSED
+from vbraille.engine.ticks import POSE_X, POSED
 from vbraille.errors import InputError
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulated import SimulatedDevice
@@ -62,17 +62,18 @@ class BatchEngine(LocalEngine):
 
     def poll(self) -> NDArray[np.void]:
         """Do some ticks; return their records, `vbraille.engine.record.tick_dtype`[n]."""
-        device, state, ring = self.device, self.state, self.ring
+        device, ring = self.device, self.ring
         due_ns = (self.tally.ticks + np.arange(self.poll_ticks)) * self._period_ns
         self.clock.sleep_until_ns(int(due_ns[0]))
         due_ns = due_ns[: device.until_done(due_ns)]
         poses = np.zeros((due_ns.size, 4))
         poses[:, POSED] = 1.0
-        poses[:, POSE_X : POSE_THETA + 1] = device.poses_at(due_ns).T
+        for column, values in enumerate(device.poses_at(due_ns), POSE_X):
+            poses[:, column] = values
         self.clock.sleep_until_ns(int(due_ns[-1]))
         times_ns = np.repeat(due_ns[:, None], 2, axis=1)
-        slot = ring.begin()
-        state.advance(times_ns, poses, device.rested, device.taking, ring.columns, slot)
-        device.write(state.output)
-        ring.end(due_ns.size)
+        taking = device.taking
+        self.advance(times_ns, poses, device.rested, taking, ring.columns, ring.slot)
+        device.write(self.output)
+        ring.publish(due_ns.size)
         return self._take()

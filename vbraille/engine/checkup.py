@@ -6,26 +6,23 @@ line and the device are told apart where something is late.
 
 from __future__ import annotations
 
-import gc
 import math
 import os
 import socket
-from collections import deque
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from vbraille.devices.events import Placing, WatchdogTripped, shown_place, told
 from vbraille.devices.protocol import RAMP_MS, REST_MS, WATCHDOG_MS
 from vbraille.display import Pose
-from vbraille.engine.clock import ManualClock
 from vbraille.engine.constants import FADE_S, JUMP_MM_S, NS_PER_S
+from vbraille.engine.hostprocess import warm_up
 from vbraille.engine.loop import LocalEngine
 from vbraille.errors import DeviceError
 from vbraille.render.program import vibration
-from vbraille.simulation.simulated import SimulatedDevice
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -33,7 +30,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.devices.base import Device
-    from vbraille.display import Display
     from vbraille.engine.clock import Clock
 
 _RATE_S = 3.0
@@ -113,10 +109,9 @@ class Checkup:
 
 
 class Watch:
-    """Eye on a driver: how long each `read` and `write` of its device takes, and what it gives.
+    """A device whose `read` and `write` are timed, and looked at: what no driver may give.
 
-    While it is entered it stands before these two methods. What no driver may give, such as NaN,
-    goes no further than here.
+    Such as NaN goes no further than here. All else is the device's own.
 
     Parameters
     ----------
@@ -128,96 +123,78 @@ class Watch:
 
     def __init__(self, device: Device, clock: Clock) -> None:
         self._device, self._clock = device, clock
-        self._calls = {"read": device.read, "write": device.write}
-        self._own = {name: call for name, call in self._calls.items() if name in vars(device)}
-        self._spent_ns: dict[str, list[int]] = {name: [] for name in self._calls}
+        self._spent_ns: dict[str, list[int]] = {"read": [], "write": []}
         self._found: dict[str, str] = {}
-        self._last: Pose | None = None
+        self._last = Pose(-(1 << 62), math.nan)
         self._last_ns = 0
 
-    def __enter__(self) -> Self:
-        # As in the engine's process: looking for garbage may take a tenth of a second of a call.
-        self._collects = gc.isenabled()
-        gc.disable()
-        vars(self._device).update(read=self._read, write=self._write)
-        return self
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._device, name)
 
-    def __exit__(self, *_: object) -> None:
-        if self._collects:
-            gc.enable()
-        for name in self._calls:
-            del vars(self._device)[name]
-        vars(self._device).update(self._own)
-
-    @property
-    def found(self) -> bool:
-        """Tell if the driver gave anything wrong so far."""
-        return bool(self._found)
-
-    def faults(self) -> list[str]:
+    def faults(self, *, of_calls: bool = True) -> list[str]:
         """Clauses on what was wrong with the driver so far, each kind of fault once."""
         period_ms = 1e3 / self._device.display.rate_hz
         median_ms = {name: np.median(ns or [0]) / 1e6 for name, ns in self._spent_ns.items()}
         found = list(self._found.values())
-        if sum(median_ms.values()) > _MOST_OF_TICK * period_ms:
+        if of_calls and sum(median_ms.values()) > _MOST_OF_TICK * period_ms:
             told = " and ".join(f"its {name} takes {ms:.2f} ms" for name, ms in median_ms.items())
             found.append(f"{told}, of the {period_ms:g} ms that a tick has; neither may wait")
         return found
 
-    def _read(self) -> Pose | None:
+    def write(self, frame: NDArray[np.float64]) -> bool:
+        """Send a frame."""
+        return self._timed("write", frame)
+
+    def read(self) -> Pose | None:
+        """Newest pose since the last call, if it is one; see `vbraille.devices.base.Device`."""
         sample: object = self._timed("read")
         if sample is None:
             return None
         if not isinstance(sample, Pose):
-            self._find("kind", f"its read gives {sample!r}, where it must give a Pose or None")
+            wrong = f"its read gives {sample!r}, where it must give a Pose or None"
+            self._found.setdefault("kind", wrong)
             return None
         if not all(map(math.isfinite, sample)):
-            self._find("number", f"its read gives a place that is no number ({sample})")
+            wrong = f"its read gives a place that is no number ({sample})"
+            self._found.setdefault("number", wrong)
             return None
-        if self._device.placing is not Placing.DONE:
-            self._find(
+        device, last, now_ns = self._device, self._last, self._clock.now_ns()
+        turned = sample.theta_rad and not device.display.turns
+        back_ms = (last.time_ns - sample.time_ns) / 1e6
+        elapsed_s = max((now_ns - self._last_ns) / NS_PER_S, 1 / device.display.rate_hz)
+        # The first pose follows none: NaN is no jump.
+        far_mm = max(abs(sample.x_mm - last.x_mm), abs(sample.y_mm - last.y_mm))
+        for kind, is_wrong, wrong in (
+            (
                 "placing",
+                device.placing is not Placing.DONE,
                 "its read gives a place while it waits to be shown one; it must give None",
-            )
-        if sample.theta_rad and not self._device.display.turns:
-            self._find(
+            ),
+            (
                 "angle",
+                turned,
                 f"its read gives an angle of {sample.theta_rad:g} rad, and its Display has no "
                 f"turns=True",
-            )
-            sample = sample._replace(theta_rad=0.0)
-        self._compare(sample)
-        return sample
-
-    def _compare(self, sample: Pose) -> None:
-        """Look whether the clock or the place of a sample can follow those of the last one."""
-        now_ns, last = self._clock.now_ns(), self._last
-        if last is not None:
-            back_ns = last.time_ns - sample.time_ns
-            if back_ns > 0:
-                self._find("clock", f"its clock goes back, once by {back_ns / 1e6:g} ms")
-            elapsed_s = max((now_ns - self._last_ns) / NS_PER_S, 1 / self._device.display.rate_hz)
-            far_mm = max(abs(sample.x_mm - last.x_mm), abs(sample.y_mm - last.y_mm))
-            if far_mm > JUMP_MM_S * elapsed_s:
-                self._find(
-                    "jump",
-                    f"its carriage jumps, once by {far_mm:.4g} mm in {1e3 * elapsed_s:.3g} ms, "
-                    f"faster than any hand",
-                )
+            ),
+            ("clock", back_ms > 0, f"its clock goes back, once by {back_ms:g} ms"),
+            (
+                "jump",
+                far_mm > JUMP_MM_S * elapsed_s,
+                f"its carriage jumps, once by {far_mm:.4g} mm in {1e3 * elapsed_s:.3g} ms, faster "
+                f"than any hand",
+            ),
+        ):
+            if is_wrong:
+                self._found.setdefault(kind, wrong)
         self._last, self._last_ns = sample, now_ns
-
-    def _write(self, frame: NDArray[np.float64]) -> bool:
-        return self._timed("write", frame)
+        return sample._replace(theta_rad=0.0) if turned else sample
 
     def _timed(self, name: str, *given: Any) -> Any:
         begun_ns = self._clock.now_ns()
         try:
-            return self._calls[name](*given)
+            return getattr(self._device, name)(*given)
         finally:
             self._spent_ns[name].append(self._clock.now_ns() - begun_ns)
-
-    def _find(self, kind: str, fault: str) -> None:
-        self._found.setdefault(kind, fault)
 
 
 @contextmanager
@@ -239,15 +216,12 @@ def taking_parts(most: int = 5) -> Iterator[list[str]]:
             return data[:most]
         return data
 
-    def write(descriptor: int, data: Any) -> int:
-        return real_write(descriptor, part(descriptor, data))
-
     def send(self: socket.socket, data: Any, *flags: int) -> int:
-        if self.type is not socket.SOCK_STREAM:
-            return real_send(self, data, *flags)
-        return real_send(self, part(self, data), *flags)
+        whole = self.type is not socket.SOCK_STREAM
+        return real_send(self, data if whole else part(self, data), *flags)
 
-    os.write, socket.socket.send = write, send
+    os.write = lambda descriptor, data: real_write(descriptor, part(descriptor, data))
+    socket.socket.send = send
     try:
         yield faults
     finally:
@@ -264,68 +238,8 @@ def finishes_parts(device: Device) -> list[str]:
     return faults
 
 
-def warm_up(display: Display) -> None:
-    """Compile and load what a checkup calls, before a device's watchdog could trip meanwhile."""
-    clock = ManualClock()
-    with SimulatedDevice(display, clock.now_ns) as device:
-        _hold_rate(device, clock, 1 / display.rate_hz, Checkup())
-
-
-def _hold_rate(device: Device, clock: Clock, seconds: float, found: Checkup) -> None:
-    """Drive the device at its rate for a number of seconds.
-
-    Raises
-    ------
-    DeviceError
-        If the device is gone.
-    """
-    rate_hz = device.display.rate_hz
-    engine = LocalEngine(device, clock, rate_hz=rate_hz, poll_ticks=max(round(rate_hz / 4), 1))
-    # All actuators swell and sink, once a second.
-    engine.show(vibration(device.display, 1.0, exposure_s=math.inf))
-    engine.restart_clock()
-    polled = []
-    while engine.tally.ticks + engine.tally.late < seconds * rate_hz:
-        polled.append(engine.poll())
-    engine.fade_to_rest()
-    ticks = np.concatenate(polled)
-    found.ticks, found.late = engine.tally.ticks, engine.tally.late
-    found.work_us = tuple(np.percentile(ticks["work_ns"] / 1e3, (50, 99)).tolist())
-    known = ticks[~np.isnan(ticks["x_mm"])]
-    if not known.size:
-        return
-    found.x_mm = float(known["x_mm"].min()), float(known["x_mm"].max())
-    new = known[np.diff(known["device_ns"], prepend=-1) > 0]
-    arrived, taken = np.diff(new["time_ns"]) / 1e6, np.diff(new["device_ns"]) / 1e6
-    period_ms = 1e3 / rate_hz
-    if arrived.size:
-        usual_ms = float(np.median(arrived))
-        found.held_ms = usual_ms if usual_ms > _HELD_PERIODS * period_ms else 0.0
-        found.line_ms = max(float((arrived - taken).max()), 0.0)
-        if not found.held_ms:
-            found.device_ms = max(float(taken.max()) - period_ms, 0.0)
-    found.clock_s = _clock_s(known)
-
-
-def _clock_s(ticks: NDArray[np.void]) -> float | None:
-    """Way of the device's clock in a second of the computer's.
-
-    Compares how far the device's clock is ahead in the first third of the samples and in the last.
-    Medians are taken, so that samples which came late, as after a stall, weigh little.
-    """
-    third = ticks.size // 3
-    if not third:
-        return None
-    first, last = ticks[:third], ticks[-third:]
-    ahead_ns = [float(np.median(part["device_ns"] - part["time_ns"])) for part in (first, last)]
-    passed_ns = float(np.median(last["time_ns"]) - np.median(first["time_ns"]))
-    return 1 + (ahead_ns[1] - ahead_ns[0]) / passed_ns if passed_ns else None
-
-
 class ActuatorSwings:
-    """Actuators of a device that swing one after the other.
-
-    The caller calls `tick` again and again; each call waits for its time.
+    """An actuator of a device that swings out and back some times, and then rests.
 
     Parameters
     ----------
@@ -333,44 +247,32 @@ class ActuatorSwings:
         Open device.
     clock
         Clock by which ticks are due.
-    begun
-        Function that is told the row and column, from 0, of each actuator as it begins to swing.
     swing_s
         Time of a swing, out and back, in seconds.
     swings
-        How often an actuator swings before it rests again.
+        How often an actuator swings.
+
+    Attributes
+    ----------
+    left : int
+        Number of ticks for which the actuator in turn still swings.
     """
 
-    def __init__(
-        self,
-        device: Device,
-        clock: Clock,
-        begun: Callable[[tuple[int, int]], None] = lambda _: None,
-        swing_s: float = 1.0,
-        swings: int = 4,
-    ) -> None:
-        rate_hz = device.display.rate_hz
-        self._device, self._clock, self._say_begun = device, clock, begun
-        self._period_ns = round(NS_PER_S / rate_hz)
-        self._steps, self._swings = round(swing_s * rate_hz), swings
-        self._fade = 1 / max(FADE_S * rate_hz, 1.0)  # of a deflection, a frame
+    def __init__(self, device: Device, clock: Clock, swing_s: float = 1.0, swings: int = 4) -> None:
+        self._device, self._clock = device, clock
+        self._rate_hz = device.display.rate_hz
+        self._steps = round(swing_s * self._rate_hz)
+        self._all = self._steps * swings
+        self.left = 0
         self._frame = np.zeros(device.display.shape)
-        self._next: deque[tuple[int, int]] = deque()
-        self._at: tuple[int, int] | None = None
-        self._step = 0
-        self._ending = False
+        self._at = 0, 0
         self._due_ns = clock.now_ns()
         self._was = device.rested, device.taking
 
-    @property
-    def resting(self) -> bool:
-        """Tell whether every actuator is at rest, and none is to swing."""
-        return self._at is None and not self._next
-
-    def swing(self, *places: tuple[int, int]) -> None:
-        """Have actuators swing one after the other, once the present one has faded to rest."""
-        self._next = deque(places)
-        self._ending = True
+    def swing(self, place: tuple[int, int]) -> None:
+        """Have another actuator swing, by its row and column; the one before rests at once."""
+        self._frame[:] = 0.0
+        self._at, self.left = place, self._all
 
     def tick(self) -> None:
         """Wait for the next frame's time, read the device, and send the frame.
@@ -380,18 +282,12 @@ class ActuatorSwings:
         DeviceError
             If the device is gone for good.
         """
-        device = self._device
-        self._due_ns = max(self._due_ns + self._period_ns, self._clock.now_ns() - self._period_ns)
-        self._clock.sleep_until_ns(self._due_ns)
-        device.read()
-        now = device.rested, device.taking
-        if now != self._was:
-            # It has gone to rest by itself, or leaves it: begin again from there.
-            self._was, self._step = now, 0
-            if self._at is not None:
-                self._frame[self._at] = 0.0
-        self._move()
-        device.write(self._frame)
+        now = self._device.rested, self._device.taking
+        if now != self._was:  # it has gone to rest by itself, or leaves it: begin again from there
+            self._was, self.left = now, self._all if self.left else 0
+        self.left = max(self.left - 1, 0)
+        self._frame[self._at] = math.sin(math.pi * self.left / self._steps) ** 2
+        self._send(self._frame)
 
     def rest(self) -> None:
         """Fade to rest.
@@ -401,28 +297,18 @@ class ActuatorSwings:
         DeviceError
             If the device is gone for good.
         """
-        self.swing()
-        while not self.resting or self._device.moving:
-            self.tick()
+        self.left = 0
+        steps = round(FADE_S * self._rate_hz)
+        while self._frame.any() or self._device.moving:
+            self._frame[:] = np.maximum(self._frame - 1 / max(steps, 1), 0.0)
+            self._send(self._frame)
 
-    def _move(self) -> None:
-        """Move the actuator that swings by a step, or go to the next."""
-        if self._at is None:
-            self._ending = False
-            if self._next:
-                self._at, self._step = self._next.popleft(), 0
-                self._say_begun(self._at)
-            return
-        if self._ending:
-            level = max(self._frame[self._at] - self._fade, 0.0)
-        else:
-            self._step += 1
-            level = math.sin(math.pi * self._step / self._steps) ** 2
-            if self._step == self._steps * self._swings:
-                level, self._ending = 0.0, True
-        self._frame[self._at] = level
-        if self._ending and level == 0.0:
-            self._at = None
+    def _send(self, frame: NDArray[np.float64]) -> None:
+        period_ns = round(NS_PER_S / self._rate_hz)
+        self._due_ns = max(self._due_ns + period_ns, self._clock.now_ns() - period_ns)
+        self._clock.sleep_until_ns(self._due_ns)
+        self._device.read()
+        self._device.write(frame)
 
 
 def check(
@@ -446,19 +332,17 @@ def check(
     """
     warm_up(device.display)
     device.read()  # what came meanwhile
-    with Watch(device, clock) as watch:
-        return _Check(device, clock, say, watch).run(rate_s)
+    return _Check(device, clock, say).run(rate_s)
 
 
 class _Check:
     """One check; each of its parts says what it measured and gives what is wrong."""
 
-    def __init__(
-        self, device: Device, clock: Clock, say: Callable[[str], None], watch: Watch
-    ) -> None:
-        self._device, self._clock, self._say, self._watch = device, clock, say, watch
+    def __init__(self, device: Device, clock: Clock, say: Callable[[str], None]) -> None:
+        self._watch = Watch(device, clock)
+        self._device: Any = self._watch  # to all others it is the device
+        self._clock, self._say = clock, say
         self._period_ns = round(NS_PER_S / device.display.rate_hz)
-        self._rest = np.zeros(device.display.shape)
         self._counted = dict(device.counts())  # before
         self._shown = False  # whether its place was chosen here, and says nothing
         self._found = Checkup()
@@ -467,20 +351,17 @@ class _Check:
         device, found = self._device, self._found
         self._wait_for_place()
         self._swing_each()
-        found.host_ms = self._computer_ms()
-        missed = device.counts().get("states missed", 0)
-        _hold_rate(device, self._clock, rate_s, found)
-        missed = device.counts().get("states missed", 0) - missed
-        found.wrong += [*self._rate(missed), *self._time(), *self._place(), *self._round_trips()]
-        found.counts = {
-            name: count - self._counted.get(name, 0) for name, count in device.counts().items()
-        }
+        self._hold_rate(rate_s)
+        found.wrong += [*self._rate(), *self._time(), *self._place(), *self._round_trips()]
+        counts = device.counts().items()
+        found.counts = {name: count - self._counted.get(name, 0) for name, count in counts}
         for name, count in found.counts.items():
             self._say(f"{name}: {count}")
             found.wrong += [f"{name}: {count}"] * (count > _MOST_FAULTS)
-        self._say_notes()
+        self._say_notes(device.take_events())
         found.wrong += [*self._watchdog(), *self._watch.faults()]
-        self._say_notes(tripped=True)
+        events = device.take_events()  # its trips were asked for
+        self._say_notes(event for event in events if not isinstance(event, WatchdogTripped))
         found.wrong += [*finishes_parts(device), *self._end()]
         verdict = f"not fit to be read on: {'; '.join(found.wrong)}" if found.wrong else self._fit()
         self._say(f"verdict: {verdict}")
@@ -492,11 +373,23 @@ class _Check:
         but = f", but {' and '.join(untold)} could not be tested" if untold else ""
         return f"fit to be read on{but}"
 
+    def _say_notes(self, events: Any) -> None:
+        for sentence in told(events):
+            self._say(sentence)
+
+    def _end(self) -> list[str]:
+        """Let the device go, which its driver may fail at."""
+        try:
+            self._device.close()
+        except Exception as fault:
+            return [f"its driver cannot let it go ({type(fault).__name__}: {fault})"]
+        return []
+
     def _wait_for_place(self) -> None:
         """Wait for any place, or a wrong one: frames are not taken without one."""
         device, clock = self._device, self._clock
         begun_ns, asked = clock.now_ns(), False
-        while device.read() is None and not self._watch.found:
+        while device.read() is None and not self._watch.faults(of_calls=False):
             if device.placing is Placing.STOP and not self._shown:
                 device.set_zero()
                 self._shown = True
@@ -508,58 +401,80 @@ class _Check:
             clock.sleep_until_ns(clock.now_ns() + 1_000_000)
 
     def _swing_each(self) -> None:
-        """Swing one actuator after the other."""
-        places = list(np.ndindex(*self._device.display.shape))
-        swings = ActuatorSwings(self._device, self._clock, self._say_actuator, _SWING_S, 1)
-        swings.swing(*places)
-        # A device that keeps going to rest is given up at last.
-        for _ in range(round(8 * _SWING_S * self._device.display.rate_hz * len(places))):
-            if swings.resting:
-                break
-            swings.tick()
+        """Swing one actuator after the other; one that keeps going to rest is given up at last."""
+        swings = ActuatorSwings(self._device, self._clock, _SWING_S, 1)
+        for row, column in np.ndindex(*self._device.display.shape):
+            self._say(f"actuator: row {row + 1}, column {column + 1}")
+            swings.swing((row, column))
+            for _ in range(8 * swings.left):
+                if swings.left:
+                    swings.tick()
 
-    def _say_actuator(self, place: tuple[int, int]) -> None:
-        self._say(f"actuator: row {place[0] + 1}, column {place[1] + 1}")
+    def _hold_rate(self, seconds: float) -> None:
+        """Drive the device at its rate, as reading does, for a number of seconds."""
+        device, found, rate_hz = self._device, self._found, self._device.display.rate_hz
+        poll_ticks = max(round(rate_hz / 4), 1)
+        engine = LocalEngine(device, self._clock, rate_hz=rate_hz, poll_ticks=poll_ticks)
+        # All actuators swell and sink, once a second.
+        engine.show(vibration(device.display, 1.0, exposure_s=math.inf))
+        engine.start()
+        polled = []
+        while engine.tally.ticks + engine.tally.late < seconds * rate_hz:
+            polled.append(engine.poll())
+        found.ticks, found.late = engine.tally.ticks, engine.tally.late
+        engine.show(None)
+        engine.poll()  # it fades to rest
+        ticks = np.concatenate(polled)
+        found.work_us = tuple(np.percentile(ticks["work_ns"] / 1e3, (50, 99)).tolist())
+        known = ticks[~np.isnan(ticks["x_mm"])]
+        new = known[np.diff(known["device_ns"], prepend=-1) > 0]
+        if new.size < 2:
+            return
+        found.x_mm = float(known["x_mm"].min()), float(known["x_mm"].max())
+        arrived, taken = np.diff(new["time_ns"]) / 1e6, np.diff(new["device_ns"]) / 1e6
+        period_ms = 1e3 / rate_hz
+        usual_ms = float(np.median(arrived))
+        found.held_ms = usual_ms if usual_ms > _HELD_PERIODS * period_ms else 0.0
+        found.line_ms = max(float((arrived - taken).max()), 0.0)
+        if not found.held_ms:
+            found.device_ms = max(float(taken.max()) - period_ms, 0.0)
+        # How far the device's clock is ahead in the first third of the samples and in the last:
+        # by medians, so that samples that came late, as after a stall, weigh little.
+        third = max(known.size // 3, 1)
+        (first_ns, first_ahead), (last_ns, last_ahead) = (
+            (np.median(part["time_ns"]), np.median(part["device_ns"] - part["time_ns"]))
+            for part in (known[:third], known[-third:])
+        )
+        found.clock_s = float(1 + (last_ahead - first_ahead) / max(last_ns - first_ns, 1))
 
-    def _say_notes(self, *, tripped: bool = False) -> None:
-        """Say what the device has told, but for trips of its watchdog that were asked for."""
-        events = self._device.take_events()
-        for sentence in told(e for e in events if not (tripped and isinstance(e, WatchdogTripped))):
-            self._say(sentence)
+    def _frames(self, level: float, to: float, seconds: float) -> Iterator[None]:
+        """Send frames that go from one deflection to another; gives control after each.
 
-    def _end(self) -> list[str]:
-        """Let the device go, which its driver may fail at."""
-        try:
-            self._device.close()
-        except Exception as fault:
-            return [f"its driver cannot let it go ({type(fault).__name__}: {fault})"]
-        return []
-
-    def _computer_ms(self) -> float:
-        """Greatest lateness of this computer alone, in half a second of ticks."""
-        clock, latest_ns = self._clock, 0
+        On the way the greatest lateness of this computer alone is measured.
+        """
+        clock, shape = self._clock, self._device.display.shape
         due_ns = clock.now_ns()
-        for tick in range(500):
-            due_ns += 1_000_000
+        for share in np.linspace(0, 1, max(round(seconds * NS_PER_S / self._period_ns), 2)):
+            due_ns += self._period_ns
+            due_ns = max(due_ns, clock.now_ns())
             clock.sleep_until_ns(due_ns)
-            latest_ns = max(latest_ns, clock.now_ns() - due_ns)
-            due_ns = max(due_ns, clock.now_ns() - 1_000_000)
-            if tick % 20 == 0:
-                self._device.read()
-                self._device.write(self._rest)
-        return latest_ns / 1e6
+            self._found.host_ms = max(self._found.host_ms, (clock.now_ns() - due_ns) / 1e6)
+            self._device.read()
+            self._device.write(np.full(shape, level + (to - level) * share))
+            yield
 
-    def _rate(self, missed: int) -> list[str]:
+    def _rate(self) -> list[str]:
         found = self._found
         due = found.ticks + found.late
         self._say(f"rate: {self._device.display.rate_hz:g} Hz, {found.late} of {due} ticks late")
         median_us, most_us = found.work_us
         self._say(f"work: median {median_us:.0f} µs, 99 % under {most_us:.0f} µs")
+        for _ in self._frames(0.0, 0.0, _HOLD_S):
+            pass
         self._say(
             f"late: this computer by {found.host_ms:.1f} ms at most, the device by "
             f"{found.device_ms:.1f} ms, the line by {found.line_ms:.1f} ms"
         )
-        self._say(f"lost: {missed} of its places")
         if found.held_ms:
             return [f"the line holds bytes back for {found.held_ms:.0f} ms; {_LATENCY}"]
         if found.late / due > _MOST_LATE:
@@ -589,33 +504,20 @@ class _Check:
         self._say(
             f"place: {low_mm:.1f} to {high_mm:.1f} mm from the {edge}, of {info.travel_mm:g} mm"
         )
-        if low_mm >= -_PLACE_SLACK_MM and high_mm <= info.travel_mm + _PLACE_SLACK_MM:
-            return []
-        off_mm = low_mm if low_mm < -_PLACE_SLACK_MM else high_mm
-        return [
-            f"its carriage is at {off_mm:.1f} mm from the {edge}, where it cannot be; see to "
-            f"{shown_place(info)}, its counts and their sign"
-        ]
-
-    def _frames(self, level: float, to: float, seconds: float) -> Iterator[None]:
-        """Send frames that go from one deflection to another; gives control after each."""
-        steps = max(round(seconds * NS_PER_S / self._period_ns), 1)
-        due_ns = self._clock.now_ns()
-        for step in range(1, steps + 1):
-            due_ns += self._period_ns
-            self._clock.sleep_until_ns(due_ns)
-            self._device.read()
-            self._device.write(np.full_like(self._rest, level + (to - level) * step / steps))
-            yield
+        for mm in (low_mm, high_mm):
+            if not -_PLACE_SLACK_MM <= mm <= info.travel_mm + _PLACE_SLACK_MM:
+                return [
+                    f"its carriage is at {mm:.1f} mm from the {edge}, where it cannot be; see to "
+                    f"{shown_place(info)}, its counts and their sign"
+                ]
+        return []
 
     def _round_trips(self) -> list[str]:
         device = self._device
         if not device.acknowledges:
             self._say("round trip: not tested, since this device does not say what it has taken")
             return []
-        for _ in self._frames(0.0, 0.0, _HOLD_S):  # until one of these is measured
-            pass
-        told = (device.acknowledged_ns for _ in self._frames(0.0, 0.0, _ROUND_TRIPS_S))
+        told = [device.acknowledged_ns for _ in self._frames(0.0, 0.0, _ROUND_TRIPS_S)]
         taken = [now_ns / 1e6 for now_ns in told if now_ns is not None]
         if not taken:
             self._say("round trip: none, for no frame was acknowledged")
@@ -655,9 +557,7 @@ class _Check:
     def _trip_ms(self) -> float | None:
         """Send nothing, with the actuators off their rest, until the device's watchdog trips."""
         device, clock = self._device, self._clock
-        for _ in self._frames(0.0, 0.0, _HOLD_S):
-            pass
-        for level, to in ((0.0, _HELD), (_HELD, _HELD)):
+        for level, to in ((0.0, 0.0), (0.0, _HELD), (_HELD, _HELD)):
             for _ in self._frames(level, to, _HOLD_S):
                 pass
         trips = device.watchdog_trips

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vbraille.engine.constants import FADE_S, NS_PER_S
-from vbraille.engine.engine import Watcher
+from vbraille.engine.engine import EndOfLine, Watcher
 from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK, Flag, Ring, Tally
 from vbraille.engine.state import LoopState
 from vbraille.engine.ticks import POSE_THETA, POSE_X, POSE_Y, POSED
@@ -34,7 +34,7 @@ _SAME_RATE = 0.01
 _GUARD = 4
 
 
-class Loop:
+class Loop(LoopState):
     """Drive a device, tick by tick.
 
     A device that tells its place as often as there are ticks begins each of them; ticks of others
@@ -54,14 +54,6 @@ class Loop:
     orders
         Descriptor that can be read when there is something to obey, and what then obeys it.
 
-    Attributes
-    ----------
-    state : LoopState
-        What a tick knows from the ticks before it.
-    late, overruns : int
-        Number of deadlines that passed before their tick could begin, and of ticks whose own work
-        took longer than a period.
-
     Raises
     ------
     ValueError
@@ -77,12 +69,11 @@ class Loop:
         ring: Ring | None = None,
         orders: tuple[int, Callable[[], None]] | None = None,
     ) -> None:
+        display, now_ns = device.display, clock.now_ns()
+        super().__init__(display, rate_hz, now_ns, device.rested)
         self.device, self.clock, self.rate_hz = device, clock, rate_hz
-        display = device.display
-        now_ns = clock.now_ns()
-        self.state = LoopState(display, rate_hz, now_ns, device.rested)
         self.ring = ring or Ring.alone(display.shape, 2)
-        self.late = self.overruns = 0
+        self._late = self._overruns = 0
         self._orders = orders
         self._period_ns = round(NS_PER_S / rate_hz)
         self._guard_ns = self._period_ns // _GUARD
@@ -92,51 +83,16 @@ class Loop:
         self._poses = np.zeros((1, 4))
         self._pose = self._poses[0]
 
-    def show(self, picture: Program | None, line: int = 0) -> None:
-        """Put another picture under the hand; it fades in.
-
-        None stands for rest. ``line`` is the number by which records call it.
-        """
-        self.state.want(picture, line)
-
-    @property
-    def output(self) -> NDArray[np.float64]:
-        """The frame last sent, float64[rows, columns]."""
-        return self.state.output
-
     @property
     def tally(self) -> Tally:
         """Counts of what happened so far."""
-        now = self.state.now
-        return Tally(
-            ticks=int(now["tick"]),
-            late=self.late,
-            overruns=self.overruns,
-            forward_mm=float(now["forward_mm"]),
-            forward_s=float(now["forward_s"]),
-        )
-
-    @property
-    def paused(self) -> bool:
-        """Tell whether the array rests until told otherwise; setting it takes effect at once."""
-        return bool(self.state.now["paused"])
-
-    @paused.setter
-    def paused(self, paused: bool) -> None:
-        self.state.pause(paused, self.clock.now_ns())
-
-    @property
-    def switches(self) -> int:
-        """States of a scene's switches; setting them takes effect with the next tick."""
-        return int(self.state.now["switches"])
-
-    @switches.setter
-    def switches(self, switches: int) -> None:
-        self.state.switch(switches, self.clock.now_ns())
+        now = self.now
+        forward = float(now["forward_mm"]), float(now["forward_s"])
+        return Tally(int(now["tick"]), self._late, self._overruns, *forward)
 
     def take_events(self) -> list[Event]:
         """Take the events of the device and of the picture since the last call."""
-        return [*self.device.take_events(), *self.state.take_events()]
+        return [*self.device.take_events(), *super().take_events()]
 
     def tick(self) -> None:
         """Wait for the next tick's time, or pose; make the frame and write it.
@@ -146,48 +102,42 @@ class Loop:
         DeviceError
             If the device is gone, or says that its carriage is where none can be.
         """
-        if self._same_rate and self.device.descriptor is not None:
-            sample = self._next_pose()
-        else:
-            sample = self._even_pose()
-        clock, device, ring, state = self.clock, self.device, self.ring, self.state
+        clock, device, ring = self.clock, self.device, self.ring
+        follows = self._same_rate and device.descriptor is not None
+        sample = self._next_pose() if follows else self._even_pose()
         now_ns = clock.now_ns()
         times_ns, pose = self._times_ns, self._pose
         times_ns[0, 0] = now_ns
-        if sample is None:
-            pose[POSED] = 0.0
-        else:
-            pose[POSED] = 1.0
+        pose[POSED] = sample is not None
+        if sample is not None:
             times_ns[0, 1], pose[POSE_X], pose[POSE_Y], pose[POSE_THETA] = sample
             if sample.theta_rad and not device.display.turns:
                 raise self._nowhere()
         taking = device.taking
-        slot = ring.begin()
-        if not state.advance(times_ns, self._poses, device.rested, taking, ring.columns, slot):
+        slot = ring.slot
+        if not self.advance(times_ns, self._poses, device.rested, taking, ring.columns, slot):
             raise self._nowhere()
-        if device.write(state.output):
-            state.sent(clock.now_ns())
+        if device.write(self.output):
+            self.now["sent_ns"] = clock.now_ns()
         elif device.taking:  # otherwise the actuators rest, as the next tick finds
-            state.unsent()
+            self.unsent()
         done_ns = clock.now_ns()
         # Deadlines that have passed are counted, and never chased.
         lateness_ns = max(now_ns - self._due_ns, 0)
         self._began_ns = now_ns
         even = self._due_ns + self._period_ns
         self._due_ns = now_ns + self._period_ns if sample and self._same_rate else even
-        behind_ns = done_ns - self._due_ns
-        if behind_ns >= self._period_ns:
-            missed = behind_ns // self._period_ns
-            self.late += missed
-            self._due_ns += missed * self._period_ns
-        self.overruns += done_ns - now_ns > self._period_ns
+        missed = max((done_ns - self._due_ns) // self._period_ns, 0)
+        self._late += missed
+        self._due_ns += missed * self._period_ns
+        self._overruns += done_ns - now_ns > self._period_ns
         whole = ring.integers
         whole[slot, LATENESS], whole[slot, WORK] = lateness_ns, done_ns - now_ns
-        whole[slot, LATE], whole[slot, OVERRUNS] = self.late, self.overruns
+        whole[slot, LATE], whole[slot, OVERRUNS] = self._late, self._overruns
         if device.placing or not (taking and device.taking):  # a write may have brought it to rest
             held = 0 if device.taking else _HELD
             whole[slot, FLAGS] = (whole[slot, FLAGS] & ~_HELD) | held | _PLACING[device.placing]
-        ring.end()
+        ring.publish()
 
     def _even_pose(self) -> Pose | None:
         """Wait until a tick is due, and read the device."""
@@ -244,22 +194,22 @@ class Loop:
         DeviceError
             If the device is gone.
         """
-        state, device = self.state, self.device
-        state.want(None, 0)
-        state.hold()
+        device = self.device
+        LoopState.show(self, None)
+        self.hold()
         if device.calibration is not None:
             device.calibrate(None)
         ticks = 0
-        self._due_ns = self.clock.now_ns()
-        while state.output.any() or device.moving:
+        self.restart_clock()
+        while self.output.any() or device.moving:
             self._due_ns = max(self._due_ns + self._period_ns, self.clock.now_ns())
             self.clock.sleep_until_ns(self._due_ns)
             ticks += 1
-            state.fade(min(ticks / (FADE_S * self.rate_hz), 1.0))
-            device.write(state.output)
+            self.fade(min(ticks / (FADE_S * self.rate_hz), 1.0))
+            device.write(self.output)
 
 
-class LocalEngine(Loop):
+class LocalEngine(Loop, Watcher):
     """An engine in this process, for a device that a program has, tests and clocks turned by hand.
 
     Parameters
@@ -275,6 +225,8 @@ class LocalEngine(Loop):
 
     Attributes
     ----------
+    display : Display
+        The actuators and the carriage of the device.
     lost : int
         Number of ticks that were never polled; always 0.
     """
@@ -287,40 +239,22 @@ class LocalEngine(Loop):
         # One more than a poll's: a view of a single record is of a type of its own, for which
         # ticks would be compiled again.
         ring = Ring.alone(device.display.shape, poll_ticks + 1)
-        super().__init__(device, clock, rate_hz=rate_hz, ring=ring)
+        Loop.__init__(self, device, clock, rate_hz=rate_hz, ring=ring)
+        Watcher.__init__(self)
+        self.display = device.display
         self.poll_ticks = poll_ticks
-        self.watcher = Watcher(device.display)
         self._reader = ring.reader()
 
     @property
-    def display(self) -> Display:
-        """The actuators and the carriage of the device."""
-        return self.device.display
-
-    @property
-    def newest(self) -> np.void | None:
-        """Record of the last tick polled; None before the first."""
-        return self.watcher.newest
-
-    @property
-    def x_mm(self) -> float | None:
-        """Place of the array's centre along x; None before the first pose."""
-        return self.watcher.x_mm
-
-    @property
-    def ready(self) -> bool:
-        """Tell whether the array is at the left, and what is shown can be felt."""
-        return self.watcher.ready
-
-    @property
     def steered(self) -> bool:
-        """Tell whether a simulated hand moves the device."""
+        """Tell whether a simulated hand moves the device, and takes orders."""
         return hasattr(self.device, "obey")
 
     def show(self, picture: Program | None, line: int = 0, end_mm: float | None = None) -> None:
-        """Put another picture under the hand; see `vbraille.engine.engine.Engine`."""
+        """Put another picture under the hand; see `vbraille.engine.host.Host.show`."""
         super().show(picture, line)
-        self.watcher.show(line, end_mm)
+        self._line = line
+        self._end = None if end_mm is None else EndOfLine(self.display.span_mm, end_mm)
 
     def give(self, order: HandOrder) -> None:
         """Tell a simulated hand what to do; nothing happens where a person moves the device."""
@@ -335,14 +269,13 @@ class LocalEngine(Loop):
         return self._take()
 
     def _take(self) -> NDArray[np.void]:
-        self.ring.publish()
         ticks = self._reader.drain()
-        self.watcher.watch(ticks)
+        self.watch(ticks, self.display)
         return ticks
 
     def take_events(self) -> list[Event]:
         """Take the events of the device, the picture and the ticks since the last call."""
-        return [*super().take_events(), *self.watcher.take_events()]
+        return [*super().take_events(), *self._take_found()]
 
     def set_zero(self) -> None:
         """Say that the carriage is at the left stop now."""

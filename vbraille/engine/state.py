@@ -21,6 +21,7 @@ from vbraille.engine.constants import (
     SILENCE_S,
     STEP_S,
 )
+from vbraille.engine.record import FLOATS, INTS
 from vbraille.errors import check_range
 from vbraille.render import work
 from vbraille.render.frames import blend
@@ -33,43 +34,34 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.render.program import Program
 
-_STATE = np.dtype(
-    [
-        (name, "<i8")
-        for name in (
-            # What does not change: durations, and whether the carriage has an axis y.
-            "period_ns", "fade_ns", "pause_ns", "catch_ns", "gap_ns", "step_ns", "idle_ns",
-            "silence_ns", "free_y",
-            "serial",  # how many pictures were wanted under the hand, and so the last one's number
-            "line",  # what records call it
-            "paused",
-            "switches",  # states of a scene's switches, three bits for each signal
-            "tick",  # number of the next one
-            "ticked_ns", "sent_ns",  # when the last one woke, and when a frame last went out
-            "faded_ns", "fading_ns",  # how far a fade has come, and how long it takes
-            "placed",  # whether it is known where the array is
-            "device_ns", "sampled_ns",  # of the last pose, by the device's clock and by ours
-            "moved_ns",  # when the hand last moved
-            "shown",  # serial number of what is under the hand; 0 at rest
-            "part",  # of what is shown
-            "turned",  # whether the array is turned too far for what is wanted
-            "begun", "shown_ns",  # the picture whose own time goes, and that time
-            "exhausted",  # the picture that has moved by itself for as long as it may
-            "exposures",  # how often one has
-            "rested",  # how often the device has gone to rest by itself
-            "flags",  # of this tick
-            "samples", "last_ns",  # of the velocity
-        )
-    ]
-    + [
-        (name, "<f8")
-        for name in (
-            "x_mm", "y_mm", "theta_rad", "vx_mm_s", "vy_mm_s",
-            "moved_x_mm", "moved_y_mm", "moved_theta",  # where the hand last moved to
-            "forward_mm", "forward_s", "share",
-        )
-    ]
+# The numbers of a tick's record come first, the whole ones and the others.
+_WHOLE = (
+    *INTS,
+    # What does not change: durations, and whether the carriage has an axis y.
+    "period_ns", "fade_ns", "pause_ns", "catch_ns", "gap_ns", "step_ns", "idle_ns", "silence_ns",
+    "free_y",
+    "serial",  # how many pictures were wanted under the hand, and so the last one's number
+    "paused",
+    "switches",  # states of a scene's switches, three bits for each signal
+    "sent_ns",  # when a frame last went out
+    "faded_ns", "fading_ns",  # how far a fade has come, and how long it takes
+    "placed",  # whether it is known where the array is
+    "sampled_ns",  # when the last pose came, by our clock
+    "moved_ns",  # when the hand last moved
+    "shown",  # serial number of what is under the hand; 0 at rest
+    "turned",  # whether the array is turned too far for what is wanted
+    "begun", "shown_ns",  # the picture whose own time goes, and that time
+    "exhausted",  # the picture that has moved by itself for as long as it may
+    "exposures",  # how often one has
+    "rested",  # how often the device has gone to rest by itself
+    "samples",  # of the velocity
 )  # fmt: skip
+_REAL = (
+    *FLOATS,
+    "own_y_mm",  # the carriage's y; a slider has none, and its record has the picture's
+    "moved_x_mm", "moved_y_mm", "moved_theta",  # where the hand last moved to
+)  # fmt: skip
+_STATE = np.dtype([(name, "<i8") for name in _WHOLE] + [(name, "<f8") for name in _REAL])
 
 
 class LoopState:
@@ -88,8 +80,6 @@ class LoopState:
 
     Attributes
     ----------
-    now : record
-        The numbers that a tick knows, by the names below.
     output : float64[rows, columns]
         The frame last made.
 
@@ -101,9 +91,8 @@ class LoopState:
 
     def __init__(self, display: Display, rate_hz: float, now_ns: int, rested: int = 0) -> None:
         check_range("rate", rate_hz, 1, 10_000, " Hz")
-        self.shape = display.shape
-        self._numbers = np.zeros(1, _STATE)
-        self.now = now = self._numbers[0]
+        state = np.zeros(1, _STATE)
+        self.now = now = state[0]
         period_s = 1 / rate_hz
         for name, duration_s in (
             ("period_ns", period_s),
@@ -117,53 +106,71 @@ class LoopState:
         ):
             now[name] = round(duration_s * NS_PER_S)
         now["free_y"] = "y" in display.axes
-        now["ticked_ns"] = now["moved_ns"] = now["sampled_ns"] = now["sent_ns"] = now_ns
+        now["time_ns"] = now["moved_ns"] = now["sampled_ns"] = now["sent_ns"] = now_ns
         now["rested"] = rested
         now["share"] = 1.0
-        self._window_ns = np.zeros(DIFFERENCE, np.int64)
-        self._window_mm = np.zeros((DIFFERENCE, 2))
-        self._velocities = np.zeros((MEAN, 2))
-        self.output = np.zeros(display.shape)
-        self._held = np.zeros(display.shape)
-        self._target = np.zeros(display.shape)
-        self._at = np.zeros(work.AT)
-        self._sent_ns, self._faded_ns = self._numbers["sent_ns"], self._numbers["faded_ns"]
-        # The frame before, the time at which it was sent, and how far its fade had come.
-        self._before = self.output.copy()
-        self._before_ns = now_ns, 0
+        now["x_mm"] = now["y_mm"] = now["theta_rad"] = np.nan
+        ints = state.view(np.int64)[: len(INTS)]
+        floats = state.view(np.float64)[len(_WHOLE) : len(_WHOLE) + len(FLOATS)]
+        self.output, self._held, self._target = (np.zeros(display.shape) for _ in range(3))
+        windows = np.zeros((DIFFERENCE, 3)), np.zeros((MEAN, 2))
+        frames = self.output, self._held, self._target
+        self._known = state, ints, floats, *windows, *frames, np.zeros(work.AT)
         self._program = nothing(display)
-        self._gather()
+        # The frame before, the time at which it was sent, and how far its fade had come.
+        self._before, self._before_ns = self.output.copy(), (now_ns, 0)
         self._serials = self._exposures = 0
 
-    def want(self, program: Program | None, line: int) -> None:
+    def show(self, picture: Program | None, line: int = 0) -> None:
         """Put another picture under the hand from the next tick on; it fades in. None is rest.
+
+        Parameters
+        ----------
+        picture
+            What is to be shown.
+        line
+            Number by which records call it.
 
         Raises
         ------
         ValueError
-            If the program was compiled for another array.
+            If it was compiled for another array.
         """
-        now = self.now
-        now["line"] = line
-        if program is None:
-            now["serial"] = 0
+        self.now["line"] = line
+        if picture is None:
+            self.now["serial"] = 0
             return
-        program.check_shape(self.shape)
+        picture.check_shape(self.output.shape)
         self._serials += 1
-        now["serial"] = self._serials
-        self._program = program
-        self._gather()
+        self.now["serial"] = self._serials
+        self._program = picture
 
-    def pause(self, paused: bool, now_ns: int) -> None:
-        """Let the array rest, or go on, from the next tick on."""
+    @property
+    def paused(self) -> bool:
+        """Tell whether the array rests until told otherwise; setting it works from the next tick.
+
+        What rests comes back for it.
+        """
+        return bool(self.now["paused"])
+
+    @paused.setter
+    def paused(self, paused: bool) -> None:
         self.now["paused"] = paused
-        self.now["moved_ns"] = now_ns
+        self.now["moved_ns"] = self.now["time_ns"]
         self.now["begun"] = self.now["exhausted"] = 0
 
-    def switch(self, switches: int, now_ns: int) -> None:
-        """Change the states of switches from the next tick on; what rests comes back for it."""
+    @property
+    def switches(self) -> int:
+        """States of a scene's switches, as `vbraille.scene.signals.packed` has them.
+
+        Setting them works from the next tick; what rests comes back for it.
+        """
+        return int(self.now["switches"])
+
+    @switches.setter
+    def switches(self, switches: int) -> None:
         self.now["switches"] = switches
-        self.now["moved_ns"] = now_ns
+        self.now["moved_ns"] = self.now["time_ns"]
 
     def take_events(self) -> list[Event]:
         """Take the events since the last call: that a picture was felt for long enough."""
@@ -182,17 +189,16 @@ class LoopState:
     ) -> int:
         """Do ticks and return how many were done; see `vbraille.engine.ticks.advance`."""
         np.copyto(self._before, self.output)
-        self._before_ns = self._sent_ns[0], self._faded_ns[0]
-        return ticks.advance(*self._arrays, times_ns, poses, rested, taking, *columns, first)
-
-    def sent(self, now_ns: int) -> None:
-        """Note when the frame last made went out."""
-        self._sent_ns[0] = now_ns
+        self._before_ns = self.now["sent_ns"], self.now["faded_ns"]
+        program = self._program.numbers, self._program.table, self._program.scratch
+        return ticks.advance(
+            *self._known, *program, times_ns, poses, rested, taking, *columns, first
+        )
 
     def unsent(self) -> None:
         """Forget the frame last made, which did not go out: the actuators are where they were."""
         np.copyto(self.output, self._before)
-        self._sent_ns[0], self._faded_ns[0] = self._before_ns
+        self.now["sent_ns"], self.now["faded_ns"] = self._before_ns
 
     def hold(self) -> None:
         """Keep the frame last made, to fade from it."""
@@ -202,19 +208,3 @@ class LoopState:
         """Make a frame between the one that `hold` kept and rest."""
         self._target.fill(0.0)
         blend(self._held, self._target, share, self.output)
-
-    def _gather(self) -> None:
-        """Gather the arrays that compiled code takes, in its order."""
-        self._arrays = (
-            self._numbers,
-            self._window_ns,
-            self._window_mm,
-            self._velocities,
-            self.output,
-            self._held,
-            self._target,
-            self._at,
-            self._program.numbers,
-            self._program.table,
-            self._program.scratch,
-        )

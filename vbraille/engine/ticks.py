@@ -10,7 +10,6 @@ without poses or frames. A fade goes by ticks: a loop that was held up would jum
 time that it lost for time in which it faded. So does the time of a picture that moves by itself.
 """
 
-import numpy as np
 from numba import njit
 
 from vbraille.caching import keep_compiled
@@ -23,25 +22,7 @@ from vbraille.engine.constants import (
     REACH_MM,
     STILL_MM,
 )
-from vbraille.engine.record import (
-    DEVICE,
-    FLAGS,
-    FORWARD_MM,
-    FORWARD_S,
-    LINE,
-    PART,
-    SHARE,
-    SHOWN,
-    SIGNAL,
-    THETA,
-    TICK,
-    TIME,
-    VX,
-    VY,
-    Flag,
-    X,
-    Y,
-)
+from vbraille.engine.record import FLAGS, PART, SHARE, SHOWN, SIGNAL, THETA, VX, VY, Flag, X, Y
 from vbraille.render import work
 from vbraille.render.frames import blend, copy
 from vbraille.render.kernels import SCENE, frame, part_of, patience, seamless, too_far
@@ -58,25 +39,24 @@ _compiled = njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 
 
 @_compiled
-def add_velocity(state, window_ns, window_mm, velocities, time_ns, x_mm, y_mm):
+def add_velocity(now, window, velocities, time_ns, x_mm, y_mm):
     """Take one more pose into the velocity: Lévesque 2009, eqs. 9.4 and 9.5.
 
     The velocity is the mean of the last 50 differences over 10 poses, in x, y and θ. Before the
     first pose, and before a gap or a step back in time, the hand is taken to have stood still.
     """
-    now = state[0]
     if now["samples"] > 0:
-        step_ns = time_ns - now["last_ns"]
+        step_ns = time_ns - now["device_ns"]
         if step_ns == 0:
             return
         if not 0 < step_ns < APART_NS:
-            forget_velocity(state, velocities)
-    at = now["samples"] % DIFFERENCE
+            forget_velocity(now, velocities)
+    place = window[now["samples"] % DIFFERENCE]
     if now["samples"] >= DIFFERENCE:
         row = now["samples"] % MEAN
-        elapsed_ns = time_ns - window_ns[at]
-        velocities[row, 0] = (x_mm - window_mm[at, 0]) / elapsed_ns * NS_PER_S
-        velocities[row, 1] = (y_mm - window_mm[at, 1]) / elapsed_ns * NS_PER_S
+        elapsed_s = (time_ns - place[0]) / NS_PER_S
+        velocities[row, 0] = (x_mm - place[1]) / elapsed_s
+        velocities[row, 1] = (y_mm - place[2]) / elapsed_s
         vx = 0.0
         vy = 0.0
         for n in range(MEAN):
@@ -84,17 +64,13 @@ def add_velocity(state, window_ns, window_mm, velocities, time_ns, x_mm, y_mm):
             vy += velocities[n, 1]
         now["vx_mm_s"] = vx / MEAN
         now["vy_mm_s"] = vy / MEAN
-    window_ns[at] = time_ns
-    window_mm[at, 0] = x_mm
-    window_mm[at, 1] = y_mm
-    now["last_ns"] = time_ns
+    place[0], place[1], place[2] = time_ns, x_mm, y_mm
     now["samples"] += 1
 
 
 @_compiled
-def forget_velocity(state, velocities):
+def forget_velocity(now, velocities):
     """Forget how the hand moved."""
-    now = state[0]
     now["samples"] = 0
     now["vx_mm_s"] = 0.0
     now["vy_mm_s"] = 0.0
@@ -102,20 +78,23 @@ def forget_velocity(state, velocities):
 
 
 @_compiled
-def _change(state, fade_ns, output, held):
+def _change(now, fade_ns):
     """Begin to fade from the frame last sent."""
-    now = state[0]
-    copy(output, held)
     now["flags"] |= _CHANGED
     now["fading_ns"] = fade_ns
     now["faded_ns"] = 0
 
 
 @_compiled
-def _take_pose(state, window_ns, window_mm, velocities, now_ns, device_ns, pose, output, held):
+def _far_mm(x_mm, y_mm, theta_rad):
+    """Return how far actuators move by a step along x, along y and a turn, at most."""
+    return max(abs(x_mm), abs(y_mm), REACH_MM * abs(theta_rad))
+
+
+@_compiled
+def _take_pose(now, window, velocities, device_ns, pose):
     """Take the pose of a tick; tell whether the array can be there."""
-    now = state[0]
-    x, y, theta = pose[POSE_X], pose[POSE_Y], pose[POSE_THETA]
+    now_ns, x, y, theta = now["time_ns"], pose[POSE_X], pose[POSE_Y], pose[POSE_THETA]
     # Each is compared by itself: a NaN fails every comparison, but `max` may hide it.
     if not (abs(x) < _NOWHERE_MM and abs(y) < _NOWHERE_MM):
         return False
@@ -123,54 +102,51 @@ def _take_pose(state, window_ns, window_mm, velocities, now_ns, device_ns, pose,
         return False
     if now["free_y"] == 0:
         y = 0.0  # a slider has no y: it stands at the picture's own
+    moved = True
     if now["placed"] == 0:
         now["placed"] = 1
         now["part"] = work.NO_PART
-        now["moved_x_mm"], now["moved_y_mm"], now["moved_theta"] = x, y, theta
-        now["moved_ns"] = now_ns
     else:
         step = x - now["x_mm"]
         elapsed_ns = max(now_ns - now["sampled_ns"], now["period_ns"])
         # Poses that were late come with the next one: only the device's clock tells of such a gap.
         gap_ns = max(elapsed_ns, min(device_ns - now["device_ns"], now["silence_ns"]))
-        turn_mm = REACH_MM * abs(theta - now["theta_rad"])
-        if max(abs(step), abs(y - now["y_mm"]), turn_mm) > JUMP_MM_S * gap_ns / NS_PER_S:
+        far_mm = _far_mm(step, y - now["own_y_mm"], theta - now["theta_rad"])
+        if far_mm > JUMP_MM_S * gap_ns / NS_PER_S:
             # No hand is so fast: the carriage was lost and found again.
-            forget_velocity(state, velocities)
-            _change(state, now["fade_ns"], output, held)
+            forget_velocity(now, velocities)
+            _change(now, now["fade_ns"])
         else:
             # A fade that is under way is not begun anew, or it would never end on a slow line.
             fading = now["faded_ns"] < now["fading_ns"]
             if gap_ns > now["gap_ns"] and now["shown"] != 0 and not fading:
-                _change(state, now["catch_ns"], output, held)
+                _change(now, now["catch_ns"])
             if step > 0:
                 now["forward_mm"] += step
                 now["forward_s"] += elapsed_ns / NS_PER_S
-    add_velocity(state, window_ns, window_mm, velocities, device_ns, x, y)
+        moved_mm = _far_mm(x - now["moved_x_mm"], y - now["moved_y_mm"], theta - now["moved_theta"])
+        moved = moved_mm > STILL_MM
+    add_velocity(now, window, velocities, device_ns, x, y)
     now["device_ns"] = device_ns
-    now["x_mm"], now["y_mm"], now["theta_rad"] = x, y, theta
+    now["x_mm"], now["own_y_mm"], now["theta_rad"] = x, y, theta
     now["sampled_ns"] = now_ns
-    far_mm = max(abs(x - now["moved_x_mm"]), abs(y - now["moved_y_mm"]))
-    if max(far_mm, REACH_MM * abs(theta - now["moved_theta"])) > STILL_MM:
+    if moved:
         now["moved_x_mm"], now["moved_y_mm"], now["moved_theta"] = x, y, theta
         now["moved_ns"] = now_ns
     return True
 
 
 @_compiled
-def _wanted(state, now_ns, taking, numbers):
+def _wanted(now, taking, numbers):
     """Serial number of the picture that belongs under the hand now; 0 is rest."""
-    now = state[0]
-    if now["paused"] or now["placed"] == 0 or not taking or now["serial"] == 0:
-        return 0
-    if now_ns - now["sampled_ns"] > now["silence_ns"]:
+    if now["paused"] or now["placed"] == 0 or not taking or now["turned"]:
         return 0
     if now["exhausted"] == now["serial"]:
         return 0
-    if now["turned"]:
+    if now["time_ns"] - now["sampled_ns"] > now["silence_ns"]:
         return 0
     # A picture that moves by itself is felt without moving the hand, though not without end.
-    still_ns = now_ns - now["moved_ns"]
+    still_ns = now["time_ns"] - now["moved_ns"]
     if numbers[work.FREQUENCY] == 0.0 and still_ns > now["idle_ns"]:
         return 0
     if still_ns > patience(numbers) * NS_PER_S:
@@ -179,16 +155,13 @@ def _wanted(state, now_ns, taking, numbers):
 
 
 @_compiled
-def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
+def _decide(now, y_mm, rested, taking, numbers):
     """Decide what is shown in this tick, and how far it has faded in."""
-    now = state[0]
     if rested != now["rested"]:
         now["rested"] = rested
-        output[:] = 0.0
         now["flags"] |= _RESTED
-        _change(state, now["fade_ns"], output, held)
+        _change(now, now["fade_ns"])
     if not taking:
-        output[:] = 0.0
         now["shown"] = 0
         now["faded_ns"] = now["fading_ns"]
     is_wanted = now["shown"] != 0 and now["shown"] == now["serial"]
@@ -197,7 +170,7 @@ def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
         now["exposures"] += 1
     turned = now["placed"] != 0 and too_far(numbers, now["theta_rad"], now["turned"] != 0)
     now["turned"] = 1 if turned else 0
-    wanted = _wanted(state, now_ns, taking, numbers)
+    wanted = _wanted(now, taking, numbers)
     # A finger at the edge of its line stays on it over a rest, and when the page comes in another
     # style, too.
     part = part_of(numbers, y_mm, now["part"])
@@ -206,12 +179,29 @@ def _decide(state, now_ns, y_mm, rested, taking, numbers, output, held):
             now["begun"] = wanted
             now["shown_ns"] = 0
         now["shown"] = wanted
-        _change(state, now["pause_ns"] if now["paused"] else now["fade_ns"], output, held)
+        _change(now, now["pause_ns"] if now["paused"] else now["fade_ns"])
     elif wanted != 0 and part != now["part"] and not seamless(numbers):
-        _change(state, now["fade_ns"], output, held)
+        _change(now, now["fade_ns"])
     now["part"] = part
     fading = now["faded_ns"] < now["fading_ns"]
     now["share"] = now["faded_ns"] / now["fading_ns"] if fading else 1.0
+
+
+@_compiled
+def _remark(now, taking):
+    """Set the flags that say what a tick was like."""
+    silent = now["time_ns"] - now["sampled_ns"] > now["silence_ns"]
+    exposed = now["exhausted"] != 0 and now["exhausted"] == now["serial"]
+    away = now["placed"] == 0 or now["turned"] or not taking or silent or now["flags"] & _RESTED
+    unfelt = now["serial"] != 0 and not now["paused"] and away
+    now["flags"] |= (
+        _PAUSED * (now["paused"] != 0)
+        + _SILENT * silent
+        + _HELD * (not taking)
+        + _EXPOSED * exposed
+        + _TURNED * now["turned"]
+        + _UNFELT * (unfelt != 0)
+    )
 
 
 @_compiled
@@ -270,8 +260,9 @@ def recall(numbers, ints, floats, at):
 @_compiled
 def advance(
     state,
-    window_ns,
-    window_mm,
+    own_ints,
+    own_floats,
+    window,
     velocities,
     output,
     held,
@@ -293,8 +284,10 @@ def advance(
 
     Parameters
     ----------
-    state, window_ns, window_mm, velocities, output, held, target, at
+    state, own_ints, own_floats, window, velocities, output, held, target, at
         What is known from earlier ticks, and room to work in: `vbraille.engine.state.LoopState`.
+        The whole numbers and the numbers of a tick's record are the first of their kind in the
+        state, of which there are views.
     numbers, table, scratch
         The program that is wanted under the hand.
     times_ns : int64[n, 2]
@@ -311,93 +304,48 @@ def advance(
         Which record takes the first tick; after the last record, record 0 is next.
     """
     now = state[0]
-    size = ints.shape[0]
-    rows, columns = output.shape
     for n in range(times_ns.shape[0]):
         now_ns = times_ns[n, 0]
-        now["flags"] = 0
-        passed_ns = min(now_ns - now["ticked_ns"], now["step_ns"])
-        now["ticked_ns"] = now_ns
+        passed_ns = min(now_ns - now["time_ns"], now["step_ns"])
+        now["time_ns"], now["flags"] = now_ns, 0
         shown_before_s = now["shown_ns"] / NS_PER_S
         if now["shown"] != 0:
             now["shown_ns"] += passed_ns
         unsent_ns = now_ns - now["sent_ns"]
         fading = now["faded_ns"] < now["fading_ns"]
         if unsent_ns > now["gap_ns"] and now["shown"] != 0 and not fading:
-            _change(state, now["catch_ns"], output, held)
+            _change(now, now["catch_ns"])
         # A frame that went out late has only just moved the actuators.
         now["faded_ns"] += max(min(passed_ns, unsent_ns), 0)
-        if poses[n, POSED] != 0.0:
-            possible = _take_pose(
-                state,
-                window_ns,
-                window_mm,
-                velocities,
-                now_ns,
-                times_ns[n, 1],
-                poses[n],
-                output,
-                held,
-            )
-            if not possible:
-                return n
-        y_mm = now["y_mm"] if now["free_y"] != 0 else numbers[work.OWN_Y]
-        _decide(state, now_ns, y_mm, rested, taking, numbers, output, held)
+        posed = poses[n, POSED] != 0.0
+        if posed and not _take_pose(now, window, velocities, times_ns[n, 1], poses[n]):
+            return n
+        placed = now["placed"] != 0
+        y_mm = now["own_y_mm"] if placed and now["free_y"] != 0 else numbers[work.OWN_Y]
+        _decide(now, y_mm, rested, taking, numbers)
         if now["shown"] == 0:
             now["flags"] |= _RESTING
-        shown_s = now["shown_ns"] / NS_PER_S
+        now["shown_s"] = now["shown_ns"] / NS_PER_S
+        if placed:
+            now["y_mm"] = y_mm
+            at[work.X], at[work.Y], at[work.THETA] = now["x_mm"], y_mm, now["theta_rad"]
         at[work.SWITCHES] = now["switches"]
-        at[work.X], at[work.Y], at[work.THETA] = now["x_mm"], y_mm, now["theta_rad"]
-        at[work.TIME], at[work.VX], at[work.VY] = shown_s, now["vx_mm_s"], now["vy_mm_s"]
+        at[work.TIME], at[work.VX], at[work.VY] = now["shown_s"], now["vx_mm_s"], now["vy_mm_s"]
         _answer(numbers, at, shown_before_s)
-        # What the flags say was done already; only the frame is to be made.
-        _show(
-            now["flags"] & _RESTING,
-            now["share"],
-            now["part"],
-            numbers,
-            table,
-            scratch,
-            at,
-            output,
-            held,
-            target,
-        )
-        if now["paused"]:
-            now["flags"] |= _PAUSED
-        if now_ns - now["sampled_ns"] > now["silence_ns"]:
-            now["flags"] |= _SILENT
         if not taking:
-            now["flags"] |= _HELD
-        if now["exhausted"] != 0 and now["exhausted"] == now["serial"]:
-            now["flags"] |= _EXPOSED
-        if now["turned"]:
-            now["flags"] |= _TURNED
-        if now["serial"] != 0 and not now["paused"]:
-            away = now["placed"] == 0 or now["turned"] != 0 or not taking
-            if away or now["flags"] & (_SILENT | _RESTED):
-                now["flags"] |= _UNFELT
-        slot = (first + n) % size
-        ints[slot, TICK] = now["tick"]
-        ints[slot, TIME] = now_ns
-        ints[slot, DEVICE] = now["device_ns"]
-        ints[slot, LINE] = now["line"]
-        ints[slot, PART] = now["part"]
-        ints[slot, FLAGS] = now["flags"]
-        placed = now["placed"] != 0
-        floats[slot, X] = now["x_mm"] if placed else np.nan
-        floats[slot, Y] = y_mm if placed else np.nan
-        floats[slot, THETA] = now["theta_rad"] if placed else np.nan
-        floats[slot, VX] = now["vx_mm_s"]
-        floats[slot, VY] = now["vy_mm_s"]
-        floats[slot, FORWARD_MM] = now["forward_mm"]
-        floats[slot, FORWARD_S] = now["forward_s"]
-        floats[slot, SHOWN] = shown_s
-        floats[slot, SHARE] = now["share"]
+            output[:] = 0.0
+        flags, share, part = now["flags"], now["share"], now["part"]
+        _show(flags, share, part, numbers, table, scratch, at, output, held, target)
+        _remark(now, taking)
+        slot = (first + n) % ints.shape[0]
+        for k in range(own_ints.shape[0]):
+            ints[slot, k] = own_ints[k]
+        for k in range(SIGNAL):
+            floats[slot, k] = own_floats[k]
         for k in range(work.MOST_SIGNALS):
             floats[slot, SIGNAL + k] = at[work.SIGNAL + k]
-        for row in range(rows):
-            for column in range(columns):
+        for row in range(output.shape[0]):
+            for column in range(output.shape[1]):
                 frames[slot, row, column] = output[row, column]
         now["tick"] += 1
         now["sent_ns"] = now_ns  # the loop knows better, if it sends the frame

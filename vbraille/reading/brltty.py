@@ -12,7 +12,7 @@ import time
 from contextlib import suppress
 from errno import ECONNREFUSED
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -20,12 +20,15 @@ from vbraille.braille.cells import mask_of
 from vbraille.errors import InputError
 from vbraille.wording import printable
 
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
 _MOST_BYTES: Final = 1 << 20  # taken at once, and of a line
 _AGAIN_S: Final = 1.0  # from one attempt to connect to the next
 _CONNECT_S: Final = 0.1
 _PORTS: Final = 1 << 16
 _DOTS: Final = re.compile(r'"([1-8| ]*)"')
-_SHOWN: Final = 40  # characters of nonsense
+_SHOWN: Final = 40  # characters of nonsense, and sentences
 
 
 class Talk:
@@ -35,6 +38,8 @@ class Talk:
     ----------
     rows, cells
         Size of the display.
+    say
+        Function that is called with a sentence on what is not as expected, once for each.
 
     Attributes
     ----------
@@ -44,26 +49,23 @@ class Talk:
         Print, a character for each cell, row after row.
     status : dict[str, int]
         Numbers of BRLTTY's state, such as ``CSRROW``.
+    hello : str
+        The first line, which tells BRLTTY the size of the display.
     """
 
-    def __init__(self, rows: int, cells: int) -> None:
+    def __init__(self, rows: int, cells: int, say: Callable[[str], None]) -> None:
         self.masks = np.zeros((rows, cells), np.uint8)
         self.text = " " * self.masks.size
         self.status: dict[str, int] = {}
+        self.hello = f"Cells {cells} {rows}"
+        self._say, self._said = say, set[str]()
         self._rest = b""
-        self._remarks: dict[str, bool] = {}  # and whether each is said
 
-    @property
-    def hello(self) -> str:
-        """The first line, which tells BRLTTY the size of the display."""
-        rows, cells = self.masks.shape
-        return f"Cells {cells} {rows}"
-
-    def remarks(self) -> list[str]:
-        """Take the sentences on what was not as expected, each once."""
-        new = [sentence for sentence, said in self._remarks.items() if not said]
-        self._remarks |= dict.fromkeys(new, True)
-        return new
+    def remark(self, sentence: str) -> None:
+        """Say a sentence once."""
+        if sentence not in self._said and len(self._said) < _SHOWN:
+            self._said.add(sentence)
+            self._say(sentence)
 
     def feed(self, data: bytes) -> None:
         """Take bytes from BRLTTY; of several lines of a kind, the last one counts."""
@@ -77,24 +79,19 @@ class Talk:
 
     def _take(self, line: str) -> None:
         kind, _, content = line.partition(" ")
-        size = self.masks.size
-        if kind.upper() == "BRAILLE" and (found := _DOTS.fullmatch(content)):
+        kind, size = kind.upper(), self.masks.size
+        if kind == "BRAILLE" and (found := _DOTS.fullmatch(content)):
             masks = [mask_of(map(int, "".join(cell.split()))) for cell in found[1].split("|")]
             if len(masks) != size:
                 self.remark(f"BRLTTY: it sent {len(masks)} cells for {size}")
             fitted = (masks + [0] * size)[:size]
             self.masks = np.array(fitted, np.uint8).reshape(self.masks.shape)
-        elif kind.upper() == "VISUAL" and content.startswith('"') and content.endswith('"'):
+        elif kind == "VISUAL" and content.startswith('"') and content.endswith('"'):
             self.text = re.sub(r"\\(.)", r"\1", content[1:-1])[:size].ljust(size)
         elif content.isascii() and content.isdigit():
-            self.status[kind.upper()] = int(content)
+            self.status[kind] = int(content)
         else:
             self.remark(f"BRLTTY: not understood: {printable(line[:_SHOWN])}")
-
-    def remark(self, sentence: str) -> None:
-        """Keep a sentence, to be said once."""
-        if len(self._remarks) < _SHOWN:
-            self._remarks.setdefault(sentence, False)
 
 
 class Port:
@@ -114,58 +111,52 @@ class Port:
     """
 
     def __init__(self, address: str, *, connects: bool = False) -> None:
-        host, colon, port = address.rpartition(":")
+        host, _, port = address.rpartition(":")
         self.local = "/" in address
-        if not self.local and not (colon and port.isdigit() and int(port) < _PORTS):
+        if not self.local and not (port.isdigit() and int(port) < _PORTS and ":" in address):
             raise InputError(f"{address!r} is no address; give a path, or HOST:PORT")
         self._family = socket.AF_UNIX if self.local else socket.AF_INET
-        self._place = address if self.local else (host or "127.0.0.1", int(port))
-        self._ends: dict[str, socket.socket] = {}
+        self._place: Any = address if self.local else (host or "127.0.0.1", int(port))
+        self._listening = self._brltty = None
         self._due_s = 0.0
         if not connects:
             try:
-                self._ends["listening"] = self._listen()
+                self._listening = self._listen()
             except OSError as error:
                 raise InputError(f"{address} cannot be listened at: {error}") from None
 
     def _listen(self) -> socket.socket:
-        if self.local:
-            # A socket at which no program listens any more is removed.
-            with socket.socket(self._family) as asked, suppress(FileNotFoundError):
-                if asked.connect_ex(self._place) == ECONNREFUSED:
-                    Path(str(self._place)).unlink()
-            listening = socket.socket(self._family)
-            before = os.umask(0o177)
-            try:
-                listening.bind(self._place)
-                listening.listen()
-            except OSError:
-                listening.close()
-                raise
-            finally:
-                os.umask(before)
-        else:
-            listening = socket.create_server(self._place)  # type: ignore[arg-type]
-        listening.setblocking(False)
-        return listening
+        if not self.local:
+            return socket.create_server(self._place)
+        # A socket at which no program listens any more is removed.
+        with socket.socket(self._family) as asked, suppress(FileNotFoundError):
+            if asked.connect_ex(self._place) == ECONNREFUSED:
+                Path(self._place).unlink()
+        before = os.umask(0o177)
+        try:
+            return socket.create_server(self._place, family=self._family)
+        finally:
+            os.umask(before)
 
     @property
     def connected(self) -> bool:
         """Tell whether BRLTTY is there."""
-        return "brltty" in self._ends
+        return self._brltty is not None
 
     @property
     def descriptors(self) -> list[int]:
         """Descriptors that have something to read when there is something to take."""
-        return [end.fileno() for end in self._ends.values()]
+        return [end.fileno() for end in (self._listening, self._brltty) if end is not None]
 
     def meet(self) -> bool:
         """Tell whether BRLTTY has come, or come again."""
+        now_s = time.monotonic()
         try:
-            if "listening" in self._ends:
-                found = self._ends["listening"].accept()[0]
-            elif not self.connected and time.monotonic() >= self._due_s:
-                self._due_s = time.monotonic() + _AGAIN_S
+            if self._listening is not None:
+                self._listening.setblocking(False)
+                found = self._listening.accept()[0]
+            elif self._brltty is None and now_s >= self._due_s:
+                self._due_s = now_s + _AGAIN_S
                 found = socket.socket(self._family)
                 found.settimeout(_CONNECT_S)
                 found.connect(self._place)
@@ -174,37 +165,35 @@ class Port:
         except OSError:
             return False
         found.setblocking(False)
-        self._end("brltty")
-        self._ends["brltty"] = found
+        self._part()
+        self._brltty = found
         return True
 
     def take(self) -> bytes:
         """Take what BRLTTY has sent; `connected` is False when it has ended."""
         data = b""
-        while self.connected and len(data) < _MOST_BYTES:
-            try:
-                more = self._ends["brltty"].recv(_MOST_BYTES)
-            except BlockingIOError:
-                break
-            except OSError:
-                more = b""
-            data += more
-            if not more:
-                self._end("brltty")
+        with suppress(BlockingIOError):
+            with suppress(ConnectionError):
+                data = self._brltty.recv(_MOST_BYTES) if self._brltty is not None else b""
+            if not data:
+                self._part()
         return data
 
     def send(self, line: str) -> None:
         """Send a line; one for which BRLTTY has no room is lost, like a key that is not heard."""
-        with suppress(OSError, KeyError):
-            self._ends["brltty"].send(f"{line}\n".encode())
+        if self._brltty is not None:
+            with suppress(OSError):
+                self._brltty.send(f"{line}\n".encode())
 
-    def _end(self, name: str) -> None:
-        if name in self._ends:
-            self._ends.pop(name).close()
+    def _part(self) -> None:
+        if self._brltty is not None:
+            self._brltty.close()
+        self._brltty = None
 
     def close(self) -> None:
         """End; the file of a Unix socket goes."""
-        self._end("brltty")
-        if self.local and "listening" in self._ends:
-            Path(str(self._place)).unlink(missing_ok=True)
-        self._end("listening")
+        self._part()
+        if self._listening is not None:
+            self._listening.close()
+            if self.local:
+                Path(self._place).unlink(missing_ok=True)

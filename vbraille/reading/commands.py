@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Flag, auto
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -65,11 +66,11 @@ class Command:
     steers: bool = False
 
 
-COMMANDS: dict[str, Command] = {}
+_COMMANDS: list[Command] = []
 _MODULES = {
-    Where.BOOK: ("moving", "structure", "searching", "marking", "saying", "feeling"),
-    Where.PICTURE: ("touring",),
-    Where.FIGURE: ("touring",),
+    Where.BOOK: ("moving", "structure", "searching", "feeling"),
+    Where.PICTURE: ("picture",),
+    Where.FIGURE: ("picture",),
     Where.GAME: ("game",),
     Where.TUNING: ("tuning",),
     Where.SCREEN: ("screen",),
@@ -102,34 +103,40 @@ def command(
 
     def decorate(function: Callable[[Any], None]) -> Callable[[Any], None]:
         own = tuple(key.replace("space", " ") for key in keys.split())
-        other = tuple(nvda.split()) or own
-        called = name or function.__name__.strip("_").replace("_", "-")
-        made = (own, other, where, tuple(also.split()), first, steers)
-        COMMANDS[f"{called} {where.value}"] = Command(called, function, help, *made)
+        made = (own, tuple(nvda.split()) or own, where, tuple(also.split()), first, steers)
+        _COMMANDS.append(Command(name or _named(function), function, help, *made))
         return function
 
     return decorate
 
 
 def both_ways(
-    thing: str, keys: str, nvda: str = "", also: str = "", *, first: bool = False, **how: Any
+    thing: str,
+    keys: str,
+    nvda: str = "",
+    also: str = "",
+    *,
+    name: str = "",
+    first: bool = False,
+    **how: Any,
 ) -> Callable:
     """Put two commands into the table: to the next of a thing, and to the previous.
 
     The function takes the step, 1 or -1, too. The first half of the keys goes on.
     """
 
-    def decorate(function: Callable[[Any, int], None]) -> Callable[[Any, int], None]:
-        called = function.__name__.strip("_").replace("_", "-")
+    def decorate(function: Callable[..., None]) -> Callable[..., None]:
         for half, (step, way) in enumerate(((1, "next"), (-1, "previous"))):
             own, other, more = (_half(each.split(), half) for each in (keys, nvda, also))
-            told = {**how, "first": first and not half}
-            command(f"{way} {thing}", own, other, also=more, name=f"{way}-{called}", **told)(
-                lambda what, step=step: function(what, step)
-            )
+            told = {**how, "first": first and not half, "name": f"{way}-{name or _named(function)}"}
+            command(f"{way} {thing}", own, other, also=more, **told)(partial(function, step=step))
         return function
 
     return decorate
+
+
+def _named(function: Callable) -> str:
+    return function.__name__.strip("_").replace("_", "-")
 
 
 def _half(keys: list[str], half: int) -> str:
@@ -139,11 +146,9 @@ def _half(keys: list[str], half: int) -> str:
 
 def table(where: Where) -> list[Command]:
     """Commands for something, what all have first; the modules of their functions load now."""
-    control, *_ = (
-        import_module(f"vbraille.reading.{name}") for name in ("control", *_MODULES[where])
-    )
-    found = (each for each in COMMANDS.values() if each.where & where)
-    return sorted(found, key=lambda each: each.run.__module__ != control.__name__)
+    for name in ("explored", *_MODULES[where]):
+        import_module(f"vbraille.reading.{name}")
+    return [each for each in _COMMANDS if each.where & where]
 
 
 def keys_of(each: Command, key_set: str) -> tuple[str, ...]:
@@ -165,16 +170,15 @@ def bindings(
     own
         Names of commands by keys of one's own (`own_keys`), which win over the set.
     """
+    own = own or {}
     commands = {each.name: each for each in table(where)}
+    replaced = {name for key, name in own.items() if ":" not in key}
     found = {
-        key: each for each in commands.values() for key in (*keys_of(each, key_set), *each.also)
+        key: each
+        for each in commands.values()
+        for key in (() if each.name in replaced else keys_of(each, key_set)) + each.also
     }
-    replaced = {name for key, name in (own or {}).items() if ":" not in key}
-    found = {key: each for key, each in found.items() if each.name not in replaced or ":" in key}
-    for key, name in (own or {}).items():
-        if name in commands:
-            found[key] = commands[name]
-    return found
+    return found | {key: commands[name] for key, name in own.items() if name in commands}
 
 
 def own_keys(keys: Mapping[str, Any], buttons: Mapping[str, Any]) -> dict[str, str]:

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from vbraille.reading.commands import Where
+from vbraille.braille.spelling import to_braille
+from vbraille.knobs import KNOBS
+from vbraille.reading.commands import Where, command, keys_of, spoken, table
 from vbraille.reading.outputs import Cue
 from vbraille.reading.prompt import Prompt
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
 
+    from vbraille.display import Display
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.outputs import Output
+
+_PAUSE = "pause: rest the array at once, or go on", "space"
 
 
 class Explored:
@@ -42,10 +47,16 @@ class Explored:
         Whether keys only say what they do, and whether exploring is over.
     inside : Explored or None
         What is felt in its place, such as a figure of a book.
+    style : BrailleStyle or None
+        Style of its braille; None if it has none.
+    hopeless : str or None
+        Reason why exploring will not come to its end without help; None without one.
     """
 
     where = Where.ANYWHERE
     doing = "reading"
+    hopeless: str | None = None
+    style: Any = None
 
     def __init__(
         self, device: ReadingDevice, outputs: Sequence[Output], key_set: str = "usual"
@@ -74,6 +85,11 @@ class Explored:
     # What outputs show of it
 
     @property
+    def display(self) -> Display:
+        """The actuators and the carriage."""
+        return self.device.display
+
+    @property
     def text(self) -> str:
         """Text under the hand, as it is spoken; empty if there is none."""
         return ""
@@ -88,16 +104,15 @@ class Explored:
         """Cell of that line under the finger; None if there is none."""
         return None
 
-    def echoed(self, echo: str) -> Iterable[str]:  # noqa: ARG002 - of a line, if it has one
+    def echoed(self, echo: str) -> Iterator[str]:
         """Lines that are printed of what has come under the hand; see `Console`."""
-        return ()
+        masks = self.line_masks
+        if masks is not None and echo in ("cells", "both"):
+            yield f"cells: {to_braille(masks.tolist())}"
+        if masks is not None and echo in ("text", "both"):
+            yield f"text: {self.text}"
 
     # What the loop calls
-
-    @property
-    def hopeless(self) -> str | None:
-        """Reason why exploring will not come to its end without help; None without one."""
-        return None
 
     def come_back(self) -> None:
         """Put this under the hand again, after something was felt in its place."""
@@ -114,6 +129,48 @@ class Explored:
     def route(self, cell: int) -> None:
         """Say what is at a cell of the line, and go there."""
 
-    def turn(self, knob: str, value: float) -> str:  # noqa: ARG002 - of a style, if it has one
+    def turn(self, knob: str, value: float) -> str:
         """Give a knob of the style a value; a sentence on it, or empty if it had it before."""
-        return ""
+        turned = KNOBS[knob]
+        value = turned.nearest(value)
+        if self.style is None or turned.value(self.style) == value:
+            return ""
+        self.tune(**{turned.field: value})
+        return turned.said(value)
+
+    def tune(self, **changes: Any) -> None:
+        """Show braille in another style from now on."""
+
+    # Commands of all
+
+    @command(*_PAUSE, where=Where.ANYWHERE & ~(Where.TUNING | Where.GAME), first=True, steers=True,
+             also="button:3 pins:PAUSE")  # fmt: skip
+    @command(*_PAUSE, where=Where.GAME, steers=True, also="pins:PAUSE")
+    def pause(self) -> None:
+        """Rest the array, or go on."""
+        self.device.paused = not self.device.paused
+        self.say("paused" if self.device.paused else self.doing)
+
+    @command("help", "h f1", "f1", where=Where.ANYWHERE, also="pins:HELP")
+    def help(self) -> None:
+        """Say the keys that people use most."""
+        for each in table(self.where):
+            if each.first and keys_of(each, self.key_set):
+                self.say(f"{spoken(keys_of(each, self.key_set)[0])}: {each.help}")
+        self.say("question mark, then any key: what that key does; vbraille keys lists all")
+
+    @command("learn the keys: each says what it does", "? f2", where=Where.ANYWHERE,
+             also="pins:LEARN")  # fmt: skip
+    def learn(self) -> None:
+        """Have keys say what they do, or work again."""
+        self.learning = not self.learning
+        said = "press a key to hear what it does; q leaves" if self.learning else "keys work again"
+        self.say(said)
+
+    @command("quit", "q", "ctrl-d", where=Where.ANYWHERE, first=True)
+    def quit(self) -> None:
+        """Leave learning, or end."""
+        if self.learning:
+            self.learn()
+        else:
+            self.done = True

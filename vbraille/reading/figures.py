@@ -18,12 +18,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from vbraille.display import Pose
-    from vbraille.feeling.index import SceneIndex
-    from vbraille.feeling.loading import LoadedScene
     from vbraille.layout import Line
+    from vbraille.pictures.index import SceneIndex
+    from vbraille.pictures.loading import LoadedScene
     from vbraille.reading.picture import Picture
-    from vbraille.reading.reader import Reader
-    from vbraille.reading.surface import Surface
     from vbraille.render.program import Program
     from vbraille.translate import Source
 
@@ -43,10 +41,6 @@ class BookFigures:
         Function that gives how the braille of labels is shown.
     note
         Function that is called with a sentence on each figure that cannot be felt, once.
-    rate_hz
-        Frames a second.
-    how
-        What a `Picture` takes for a figure that is felt alone.
     """
 
     def __init__(
@@ -55,27 +49,20 @@ class BookFigures:
         folder: Path | None,
         style: Callable[[], Any],
         note: Callable[[str], None],
-        rate_hz: float,
-        **how: Any,
     ) -> None:
         self._source, self._folder, self._style, self._note = source, folder, style, note
-        self._rate_hz, self._how = rate_hz, how
         self._found: dict[str, LoadedScene | InputError] = {}
         self._indices: dict[str, SceneIndex] = {}
         self._maker = ThreadPoolExecutor(1)  # what compiles takes a second to load
         self._making: tuple[int, Future[Program]] | None = None
 
-    def address(self, line: Line) -> str:
-        """Address of the figure that ends on a line; empty if none does."""
+    def _look(self, line: Line) -> LoadedScene | InputError | None:
+        """Figure that ends on a line, or what is wrong with it; None if none does."""
+        address = ""
         for mark in line.block.marks:
             ends_here = line.place < line.block.start + mark.end <= line.end
-            if mark.kind is MarkKind.IMAGE and mark.target and ends_here:
-                return mark.target
-        return ""
-
-    def of(self, line: Line) -> LoadedScene | None:
-        """Figure that a line stands for; None if it stands for none that can be felt."""
-        address = self.address(line)
+            if mark.kind is MarkKind.IMAGE and ends_here:
+                address = address or mark.target
         if address and address not in self._found:
             try:
                 self._found[address] = found = self._load(address)
@@ -84,7 +71,11 @@ class BookFigures:
             except (InputError, ValueError) as error:  # as of a name that no file can have
                 self._found[address] = InputError(str(error))
                 self._note(f"figure not felt: {error}")
-        found = self._found.get(address)
+        return self._found.get(address)
+
+    def of(self, line: Line) -> LoadedScene | None:
+        """Figure that a line stands for; None if it stands for none that can be felt."""
+        found = self._look(line)
         return None if isinstance(found, InputError) else found
 
     def rows_below(self, line: Line, pitch_mm: float, rows: int, travel_mm: float) -> int:
@@ -95,28 +86,27 @@ class BookFigures:
         needed = math.ceil(figure.scene.canvas.height_mm / pitch_mm - _ROUNDING)
         return needed if needed < rows else 0
 
-    def said(self, line: Line, *, below: bool) -> Iterator[str]:
-        """Sentence on the figure that a line stands for, if it stands for one."""
+    def tell(self, line: Line, say: Callable[[str], None], *, below: bool) -> None:
+        """Say which figure a line stands for, if it stands for one."""
         figure = self.of(line)
         if figure is not None:
             canvas = figure.scene.canvas
             size = f"{canvas.width_mm:g} mm × {canvas.height_mm:g} mm"
             where = "below this line" if below else "shift-g feels it"
-            yield f"figure: {figure.title}, {size}; {where}"
+            say(f"figure: {figure.title}, {size}; {where}")
 
-    def on(self, surface: Surface) -> Iterator[tuple[LoadedScene, float]]:
+    def on(self, surface: Any) -> Iterator[tuple[LoadedScene, float]]:
         """Figures of a page, each with the place in mm at which it begins."""
-        for row in surface.free:
-            part = surface.parts[row]
-            figure = None if part is None else self.of(part.line)
+        for row, part in enumerate(surface.parts):
+            figure = self.of(part.line) if surface.has_free(row) else None
             if figure is not None:
                 yield figure, (row + 1) * surface.style.geometry.line_pitch_mm
 
-    def place(self, surface: Surface) -> None:
+    def place(self, surface: Any) -> None:
         """Begin to compile a page with its figures, which `take` shows when it is ready."""
         placed, masks, style = list(self.on(surface)), surface.masks, surface.style
         if placed:
-            display, start_mm = surface.display, surface.part.start_mm
+            display = surface.display
 
             def make() -> Program:
                 # It loads numba, which a reader who comes to no figure does not need.
@@ -124,12 +114,12 @@ class BookFigures:
                 from vbraille.render.figures import FigureAt, page_with_figures
 
                 figures = [FigureAt(one.scene, (0.0, top), one.assets) for one, top in placed]
-                scene, assets = page_with_figures(masks, style, figures, start_mm=start_mm)
-                return compile_scene(scene, display, assets, rate_hz=self._rate_hz)
+                scene, assets = page_with_figures(masks, style, figures)
+                return compile_scene(scene, display, assets, rate_hz=display.rate_hz)
 
             self._making = surface.number, self._maker.submit(make)
 
-    def take(self, surface: Surface) -> None:
+    def take(self, surface: Any) -> None:
         """Have the figures of a page join it, once they are compiled."""
         if self._making is None or not self._making[1].done():
             return
@@ -140,26 +130,23 @@ class BookFigures:
             except (InputError, ValueError) as error:
                 self._note(f"figure not felt: {error}")
 
-    def here(self, surface: Surface, pose: Pose | None) -> tuple[str, str] | None:
+    def here(self, surface: Any, pose: Pose | None) -> tuple[str, str] | None:
         """Titles of the figure at a pose, and of its element there; None if none is there."""
         if pose is None:
             return None
         for figure, top_mm in self.on(surface):
-            canvas = figure.scene.canvas
-            if 0 <= pose.x_mm <= canvas.width_mm and 0 <= pose.y_mm - top_mm <= canvas.height_mm:
-                index = self._index(figure)
-                element = index.here(pose.x_mm, pose.y_mm - top_mm)
+            canvas, x_mm, y_mm = figure.scene.canvas, pose.x_mm, pose.y_mm - top_mm
+            if 0 <= x_mm <= canvas.width_mm and 0 <= y_mm <= canvas.height_mm:
+                if figure.title not in self._indices:
+                    from vbraille.pictures.index import SceneIndex  # loads numba
+
+                    made = SceneIndex(figure.scene, figure.assets, figure.boxes())
+                    self._indices[figure.title] = made
+                element = self._indices[figure.title].here(x_mm, y_mm)
                 return figure.title, "" if element is None else element.name
         return None
 
-    def _index(self, figure: LoadedScene) -> SceneIndex:
-        from vbraille.feeling.index import SceneIndex  # loads numba
-
-        if figure.title not in self._indices:
-            self._indices[figure.title] = SceneIndex(figure.scene, figure.assets, figure.boxes())
-        return self._indices[figure.title]
-
-    def feel(self, reader: Reader) -> Picture | None:
+    def feel(self, reader: Any) -> Picture | None:
         """Figure of the line, to be felt alone; None if it has none.
 
         Raises
@@ -167,21 +154,20 @@ class BookFigures:
         InputError
             If it cannot be felt.
         """
-        from vbraille.feeling.loading import check_fits
+        from vbraille.pictures.loading import check_fits
         from vbraille.reading.picture import Picture
 
-        figure = self.of(reader.line)
-        found = self._found.get(self.address(reader.line))
-        if isinstance(found, InputError):
-            raise found
+        figure = self._look(reader.line)
         if figure is None:
             return None
+        if isinstance(figure, InputError):
+            raise figure
         check_fits(figure.scene, reader.device.display)
-        how = {"rate_hz": self._rate_hz, "key_set": reader.key_set, **self._how}
-        return Picture(figure, reader.device, reader.outputs, where=Where.FIGURE, **how)
+        how = reader.device, reader.outputs, reader.key_set
+        return Picture(figure, *how, where=Where.FIGURE)
 
     def _load(self, address: str) -> LoadedScene:
-        from vbraille.feeling.loading import load_scene  # most books have no figures
+        from vbraille.pictures.loading import load_scene  # most books have no figures
 
         if self._folder is not None:
             return load_scene(self._folder / unquote(address).lstrip("/"), self._style())

@@ -14,19 +14,19 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.feeling.composing import compose
-from vbraille.feeling.loading import check_fits, load_scene
+from vbraille.pictures.composing import compose
+from vbraille.pictures.loading import check_fits, load_scene
 from vbraille.reading.commands import Where, both_ways, command
 from vbraille.reading.explored import Explored
+from vbraille.reading.picture import sweep
 from vbraille.scene.scene import Scene
-from vbraille.simulation.steering import ReadPage
 from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vbraille.display import Display
-    from vbraille.feeling.loading import LoadedScene
+    from vbraille.pictures.loading import LoadedScene
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.outputs import Output
     from vbraille.render import BrailleStyle
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 DECK = Path(__file__).parent / "deck"  # the cards that come with the program
 _LEAST_CARDS, _MOST_CARDS = 2, 50
 COLUMNS = 6  # of the table; the source does not say how its cards lie
-_LINE_MM = 10.0  # between the lines that a simulated hand goes along
 DOWN, UP, GONE = "face down", "turned up", "empty"
 _command = partial(command, where=Where.GAME)
 
@@ -73,8 +72,6 @@ class Game(Explored):
         Number of players, 1 or 2.
     seed
         Seed of the order of the cards; the next game's is one more.
-    rate_hz
-        Frames a second.
     attended
         Whether a person is at a keyboard, so that the end of a game is not the end of playing.
 
@@ -109,19 +106,17 @@ class Game(Explored):
         *,
         players: int,
         seed: int,
-        rate_hz: float = 1000.0,
         attended: bool = True,
     ) -> None:
         super().__init__(device, outputs)
         self._deck, self._seed, self._attended = deck, seed, attended
         blank = replace(deck[0], scene=Scene(canvas=deck[0].scene.canvas), numbers=())
-        cards = (*deck, blank)
-        self._programs = [compose(card, device.display, rate_hz=rate_hz) for card in cards]
+        rate_hz = device.display.rate_hz
+        self._programs = [compose(card, device.display, rate_hz=rate_hz) for card in (*deck, blank)]
         self._number = 0
-        self.felt: int | None = None
-        self.deal(players)
+        self._deal(players)
 
-    def deal(self, players: int) -> None:
+    def _deal(self, players: int) -> None:
         """Deal two cards of each picture in the random order of the seed."""
         random = Random(self._seed)
         self.cards = sorted([*range(len(self._deck))] * 2, key=lambda _: random.random())
@@ -129,10 +124,10 @@ class Game(Explored):
         self.points, self.player, self.turns = [0] * players, 0, 0
         self.up: list[int] = []
         self.place = 0
+        self._feel(None)
 
     def begin(self) -> None:
-        """Put no card under the hand, and say how the cards lie."""
-        self.feel(None)
+        """Say how the cards lie, and whose turn it is."""
         rows = -(-len(self.cards) // COLUMNS)
         self.say(f"{count(len(self.cards), 'card')} face down, {rows} rows of {COLUMNS}")
         self._say_turn()
@@ -148,15 +143,11 @@ class Game(Explored):
         row, column = divmod(place, COLUMNS)
         return f"row {row + 1}, card {column + 1}"
 
-    def say_place(self) -> None:
-        """Say the chosen place, and how its card lies."""
-        self.say(f"{self.name(self.place)}: {self.sides[self.place]}")
-
     def _say_turn(self) -> None:
         if len(self.points) > 1:
             self.say(f"player {self.player + 1}'s turn")
 
-    def feel(self, place: int | None) -> None:
+    def _feel(self, place: int | None) -> None:
         """Put the card of a place under the hand, or nothing."""
         self.felt = place
         self._number += 1
@@ -166,9 +157,7 @@ class Game(Explored):
     def steer(self) -> None:
         """Have a simulated hand go over the card that it feels."""
         if self.felt is not None:
-            canvas = self._deck[self.cards[self.felt]].scene.canvas
-            lines = max(1, round(canvas.height_mm / _LINE_MM))
-            self.device.give(ReadPage(lines, canvas.height_mm / lines, canvas.width_mm))
+            self.device.give(sweep(self._deck[self.cards[self.felt]].scene.canvas))
 
     def route(self, cell: int) -> None:
         """Choose a place that was pointed at, and turn its card, or feel it again."""
@@ -176,10 +165,35 @@ class Game(Explored):
             return
         self.place = cell
         if self.sides[cell] == UP and cell != self.felt:
-            other(self)
+            self.other()
         else:
             self.turn_up()
 
+    @both_ways(
+        "card that lies face down", "n p", also="button:1 pins:LNDN", first=True, where=Where.GAME
+    )
+    def card(self, step: int) -> None:
+        """Choose the next card that lies face down, or the one before."""
+        places = range(self.place + step, len(self.cards) if step > 0 else -1, step)
+        place = next((each for each in places if self.sides[each] == DOWN), None)
+        if place is None:
+            self.refuse(f"no {'next' if step > 0 else 'previous'} card face down")
+        else:
+            self.place = place
+            self.say_place()
+
+    def move(self, right: int, down: int) -> None:
+        """Choose the place beside, above or below."""
+        row, column = divmod(self.place, COLUMNS)
+        place = (row + down) * COLUMNS + column + right
+        if 0 <= column + right < COLUMNS and 0 <= place < len(self.cards):
+            self.place = place
+            self.say_place()
+        else:
+            self.refuse(f"edge of the table; {self.name(self.place)}")
+
+    @_command("turn the card up; after the second, find out whether they match", "enter",
+              also="button:2 pins:HOME", first=True, steers=True, name="turn")  # fmt: skip
     def turn_up(self) -> None:
         """Turn the chosen card up; if two are up, find out whether they match."""
         if len(self.up) == 2:
@@ -189,7 +203,7 @@ class Game(Explored):
         else:
             self.sides[self.place] = UP
             self.up.append(self.place)
-            self.feel(self.place)
+            self._feel(self.place)
             then = "; o feels the other, enter says whether they match" if self.up[1:] else ""
             self.say(f"{self.name(self.place)}: feel it{then}")
 
@@ -197,7 +211,7 @@ class Game(Explored):
         """End a turn: after a match both cards leave, and the player has a point and goes on."""
         (first, second), self.up = self.up, []
         self.turns += 1
-        self.feel(None)
+        self._feel(None)
         matches = self.cards[first] == self.cards[second]
         self.sides[first] = self.sides[second] = GONE if matches else DOWN
         if matches:
@@ -208,18 +222,45 @@ class Game(Explored):
         else:
             self.player = (self.player + 1) % len(self.points)
             self.say("no match: both cards are turned back")
-        if self.over:
-            self._end()
-        else:
+        if not self.over:
             self._say_turn()
-
-    def _end(self) -> None:
-        say_points(self)
-        best = [n + 1 for n, points in enumerate(self.points) if points == max(self.points)]
+            return
+        self.say_points()
+        best = [n for n, points in enumerate(self.points, 1) if points == max(self.points)]
         if len(self.points) > 1:
             self.say("a draw" if best[1:] else f"player {best[0]} has won")
         self.say(f"game over: {len(self.points)} plays again, q stops")
         self.done = not self._attended
+
+    @_command("feel the other card that is turned up", "o", also="button:3", first=True,
+              steers=True)  # fmt: skip
+    def other(self) -> None:
+        """Feel the other card that is turned up."""
+        others = [place for place in self.up if place != self.felt]
+        if others:
+            self._feel(others[0])
+            self.say(f"{self.name(others[0])}: feel it")
+        else:
+            self.refuse("no other card is turned up; enter turns one")
+
+    @_command("say the place, and how its card lies", "i u")
+    def say_place(self) -> None:
+        """Say the chosen place, and how its card lies."""
+        self.say(f"{self.name(self.place)}: {self.sides[self.place]}")
+
+    @_command("say how all cards lie", "O", first=True, steers=True)
+    def say_table(self) -> None:
+        """Say how all cards lie, row by row."""
+        for begin in range(0, len(self.sides), COLUMNS):
+            row = ", ".join(self.sides[begin : begin + COLUMNS])
+            self.say(f"row {begin // COLUMNS + 1}: {row}")
+
+    @_command("say the points", "V f5", first=True, steers=True)
+    def say_points(self) -> None:
+        """Say the points of each player, and what is left."""
+        points = [f"player {n}: {count(each, 'point')}" for n, each in enumerate(self.points, 1)]
+        left = sum(side != GONE for side in self.sides)
+        self.say(f"{', '.join(points)}; {count(left, 'card')} left, {count(self.turns, 'turn')}")
 
     def again(self, players: int) -> None:
         """Deal anew for so many players, unless a game is going on."""
@@ -227,90 +268,17 @@ class Game(Explored):
             self.refuse("this game is not over; q stops it")
             return
         self._seed += 1
-        self.deal(players)
+        self._deal(players)
         self.begin()
 
 
-def _move(game: Game, right: int, down: int) -> None:
-    row, column = divmod(game.place, COLUMNS)
-    place = (row + down) * COLUMNS + column + right
-    if 0 <= column + right < COLUMNS and 0 <= place < len(game.cards):
-        game.place = place
-        game.say_place()
-    else:
-        game.refuse(f"edge of the table; {game.name(game.place)}")
-
-
-def _add_ways() -> None:
-    ways = {"right": (1, 0), "left": (-1, 0), "down": (0, 1), "up": (0, -1)}
-    for name, by in ways.items():
-
-        @_command(f"place {name}", name, name=name)
-        def move(game: Game, by: tuple[int, int] = by) -> None:
-            _move(game, *by)
-
-
-_add_ways()
-
-
-@both_ways(
-    "card that lies face down", "n p", also="button:1 pins:LNDN", first=True, where=Where.GAME
-)
-def card(game: Game, step: int) -> None:
-    places = range(game.place + step, len(game.cards) if step > 0 else -1, step)
-    place = next((each for each in places if game.sides[each] == DOWN), None)
-    if place is None:
-        game.refuse(f"no {'next' if step > 0 else 'previous'} card face down")
-    else:
-        game.place = place
-        game.say_place()
-
-
-@_command(
-    "turn the card up; after the second, find out whether they match",
-    "enter",
-    also="button:2 pins:HOME",
-    first=True,
-    steers=True,
-)
-def turn(game: Game) -> None:
-    game.turn_up()
-
-
-@_command("feel the other card that is turned up", "o", also="button:3", first=True, steers=True)
-def other(game: Game) -> None:
-    others = [place for place in game.up if place != game.felt]
-    if others:
-        game.feel(others[0])
-        game.say(f"{game.name(others[0])}: feel it")
-    else:
-        game.refuse("no other card is turned up; enter turns one")
-
-
-@_command("say the place, and how its card lies", "i u")
-def say_place(game: Game) -> None:
-    game.say_place()
-
-
-@_command("say how all cards lie", "O", first=True, steers=True)
-def say_table(game: Game) -> None:
-    for begin in range(0, len(game.sides), COLUMNS):
-        row = ", ".join(game.sides[begin : begin + COLUMNS])
-        game.say(f"row {begin // COLUMNS + 1}: {row}")
-
-
-@_command("say the points", "V f5", first=True, steers=True)
-def say_points(game: Game) -> None:
-    points = [f"player {n}: {count(each, 'point')}" for n, each in enumerate(game.points, 1)]
-    left = sum(side != GONE for side in game.sides)
-    game.say(f"{', '.join(points)}; {count(left, 'card')} left, {count(game.turns, 'turn')}")
-
-
-@_command("deal again for one player", "1", steers=True)
-def one(game: Game) -> None:
-    game.again(1)
-
-
-@_command("deal again for two players", "2", steers=True)
-def two(game: Game) -> None:
-    game.again(2)
+for name, (right, down) in {
+    "right": (1, 0),
+    "left": (-1, 0),
+    "down": (0, 1),
+    "up": (0, -1),
+}.items():
+    _command(f"place {name}", name, name=name)(partial(Game.move, right=right, down=down))
+for players, name in ((1, "one"), (2, "two")):
+    _command(f"deal again for {name} player{'s' if players > 1 else ''}", str(players), name=name,
+             steers=True)(partial(Game.again, players=players))  # fmt: skip

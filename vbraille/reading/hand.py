@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.engine.engine import HOME_MM
 from vbraille.engine.record import Flag
 from vbraille.wording import setting
 
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
 _STILL_S = 10.0
 _STILL_MM = 0.5  # a hand that moves less is still
 _REFUSED_S, _HOPELESS_S = 1.0, 10.0  # without a frame taken
-_TURNS, _SAME_MM, _NEAR_MM = 3, 1.0, 5.0  # so many turns at the same place are an obstacle
+_TURNS, _SAME_MM = 3, 1.0  # so many turns at the same place are an obstacle
 _LEAST_WAY_MM = 20.0  # a hand that has gone less waits at the left
 _FILTER_HZ = 200.0  # above this the devices' filters take texture away (Lévesque 2009, 6.2)
 # Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
@@ -53,12 +52,13 @@ class HandWatch:
         self, span_mm: float, end_mm: float, line: str, *, by_hand: bool, otherwise: str
     ) -> None:
         self.hopeless: str | None = None
-        self._home_mm, self._end_mm = HOME_MM - span_mm / 2, end_mm
-        self._line, self._by_hand, self._otherwise = line, by_hand, otherwise
+        self._stop_mm = -span_mm / 2
+        self._end_mm, self._line = end_mm, line
+        self._by_hand, self._otherwise = by_hand, otherwise
         self._said: set[str] = set()
         self._since_s = self._refused_s = -1.0  # below 0: not now
         self._at_mm = self._edge_mm = np.nan
-        self._way = 0  # 1 to the right, -1 to the left
+        self._way = 1  # to the right, -1 to the left
         self._turns_mm: list[float] = []  # away from the end that the hand is to come to
 
     def rest(self) -> None:
@@ -77,75 +77,57 @@ class HandWatch:
         """
         now_s, flags = int(ticks["time_ns"][-1]) / 1e9, int(ticks["flags"][-1])
         if flags & HELD:
-            yield from self._refused(now_s)
-        elif self._refused_s >= 0:
+            self._refused_s = now_s if self._refused_s < 0 else self._refused_s
+            if now_s - self._refused_s >= _REFUSED_S:
+                yield from self._once(
+                    f"the device takes no frames, so that nothing is felt; switch it off and on, "
+                    f"and {self._line} goes on"
+                )
+            if now_s - self._refused_s >= _HOPELESS_S:
+                self.hopeless = (
+                    f"the device took no frames for {_HOPELESS_S:g} s; switch it off and on"
+                )
+        else:
             self._refused_s = -1.0
-            if "refused" in self._said:
-                self._said.remove("refused")
-                yield f"device: takes frames again; {self._line} is felt from here on"
         if patient or not self._by_hand or flags & (HELD | _PLACING):
             self._since_s = -1.0
             return
+        if reached:
+            goal = f"{self._line} is read; move back to the left stop, at {self._stop_mm:.1f} mm"
+        else:
+            goal = f"{self._line} ends at {self._end_mm:.0f} mm; read to its end and move back"
         x_mm = ticks["x_mm"]
         if self._since_s < 0 or (np.abs(x_mm - self._at_mm) > _STILL_MM).any():
             self._since_s, self._at_mm = now_s, float(x_mm[-1])
-        if now_s - self._since_s > _STILL_S:
-            yield from self._once("still", f"waiting: {self._still(reached=reached)}")
+        if now_s - self._since_s > _STILL_S and np.isnan(self._at_mm):
+            yield from self._once("the device has not told its place; see that it is on")
+        elif now_s - self._since_s > _STILL_S:
+            still = f"the finger is still at {max(self._at_mm, 0):.0f} mm, and {goal}"
+            yield from self._once(f"{still}, or {self._otherwise}")
         self._turn(float(x_mm[-1]), reached=reached)
         last = self._turns_mm[-_TURNS:]
-        spread_mm = max(last) - min(last) if len(last) == _TURNS else np.inf
-        if spread_mm <= _NEAR_MM:  # a person who reads a word again turns here and there
-            at_mm, stop_mm = self._turns_mm[-1], self._home_mm - HOME_MM
-            way = f"the finger turns at {at_mm:.0f} mm each time"
-            goal = f"the left stop is at {stop_mm:.1f} mm" if reached else self._to_end
-            yield from self._once("turned", f"waiting: {way}, and {goal}; or {self._otherwise}")
-            if spread_mm <= _SAME_MM:
-                self.hopeless = (
-                    f"{self._line} is not read to its end: {way}, and {goal}; see what is in the "
-                    f"carriage's way, or give a shorter {setting('travel')}; its driver says "
-                    f"-span_mm / 2 at its left stop"
-                )
-
-    def _refused(self, now_s: float) -> Iterator[str]:
-        if self._refused_s < 0:
-            self._refused_s = now_s
-        if now_s - self._refused_s >= _REFUSED_S:
-            yield from self._once(
-                "refused",
-                f"waiting: the device takes no frames, so that nothing is felt; switch it off and "
-                f"on, and {self._line} goes on",
+        if len(last) == _TURNS and max(last) - min(last) <= _SAME_MM:
+            said = f"the finger turns at {last[-1]:.0f} mm each time, and {goal}"
+            yield from self._once(f"{said}, or {self._otherwise}")
+            self.hopeless = (
+                f"{said}; see what is in the carriage's way, or give a shorter {setting('travel')}"
             )
-        if now_s - self._refused_s >= _HOPELESS_S:
-            self.hopeless = f"the device took no frames for {_HOPELESS_S:g} s; switch it off and on"
 
     def _turn(self, x_mm: float, *, reached: bool) -> None:
         """Note where a hand turns before it is where it has to come to."""
         if not self._way * (x_mm - self._edge_mm) < 0:  # on, or the first place
             self._edge_mm = x_mm
-            self._way = self._way or 1
         elif abs(x_mm - self._edge_mm) > _LEAST_WAY_MM:
             short = self._edge_mm < self._end_mm / 2 if reached else self._edge_mm < self._end_mm
             if short and self._way == (-1 if reached else 1):
                 self._turns_mm.append(self._edge_mm)
             self._way, self._edge_mm = -self._way, x_mm
 
-    @property
-    def _to_end(self) -> str:
-        return f"{self._line} ends at {self._end_mm:.0f} mm; read to its end and move back"
-
-    def _once(self, what: str, sentence: str) -> Iterator[str]:
-        if what not in self._said:
-            self._said.add(what)
-            yield sentence
-
-    def _still(self, *, reached: bool) -> str:
-        if np.isnan(self._at_mm):
-            said = f"the device has not told its place for {_STILL_S:g} s; see that it is on"
-        elif reached:
-            said = f"{self._line} is read; move back to the left"
-        else:
-            said = f"the finger is still at {max(self._at_mm, 0):.0f} mm, and {self._to_end}"
-        return f"{said}, or {self._otherwise}"
+    def _once(self, sentence: str) -> Iterator[str]:
+        kind = " ".join(sentence.split()[:4])
+        if kind not in self._said:
+            self._said.add(kind)
+            yield f"waiting: {sentence}"
 
 
 def too_fast_note(speed_mm_s: float, style: BrailleStyle) -> str | None:

@@ -1,18 +1,24 @@
-"""Commands that move by lines, parts of a line and pages of the surface, or by time."""
+"""Commands that move by lines and pages of the surface, or by time; say where one is; bookmarks."""
 
 from __future__ import annotations
 
+import unicodedata
 from typing import TYPE_CHECKING
 
 from vbraille.reading.commands import both_ways, command
-from vbraille.reading.reader import USUAL_CELLS_S
-from vbraille.reading.surface import Part
+from vbraille.reading.outputs import Cue
+from vbraille.reading.places import around
+from vbraille.reading.reader import letter_said
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from vbraille.layout import Line
     from vbraille.reading.reader import Reader
 
-_SPEEDS = (1.0, 30.0)  # cells a second
-_FASTER = 1.2
+_USUAL, _SPEEDS, _FASTER = 8.0, (1.0, 30.0), 1.2  # cells a second
+_LOOKED_BACK = 5000  # blocks, for the page and the heading
+LINES_PER_PAGE = 25  # of a braille page, where the book has no pages of print
 
 
 @command("next line", "n down", "down", also="button:1 pins:LNDN", first=True, steers=True)
@@ -46,7 +52,7 @@ def pan_left(reader: Reader) -> None:
 
 def _pan(reader: Reader, step: int) -> None:
     if reader.pan(step):
-        reader.say(f"from cell {reader.surface.part.first + 1}")
+        reader.say(f"from cell {reader.part.first + 1}")
     else:
         _go(reader, step, at_end=step < 0)
 
@@ -59,23 +65,24 @@ def line_start(reader: Reader) -> None:
 
 @command("end of the line", "end", also="pins:LNEND")
 def line_end(reader: Reader) -> None:
-    reader.show(reader.line, Part(reader.line, reader.surface.width).last().first)
+    reader.show(reader.line, len(reader.line) - 1)
     reader.say("end of the line")
 
 
 @command("first line of the text", "< ctrl-home", also="pins:TOP")
 def top(reader: Reader) -> None:
-    first = reader.layout.first() if reader.first == 1 else reader.layout.line(reader.first)
-    if first is not None:
-        reader.jump(first.place)
+    _jump_to(reader, reader.first_line())
 
 
 @command("last line of the text", "> ctrl-end", also="pins:BOT")
 def bottom(reader: Reader) -> None:
     last = None if reader.last is None else reader.layout.line(reader.last)
-    last = last or reader.layout.last()
-    if last is not None:
-        reader.jump(last.place)
+    _jump_to(reader, last or reader.layout.last())
+
+
+def _jump_to(reader: Reader, line: Line | None) -> None:
+    if line is not None:
+        reader.jump(line.place)
 
 
 @command("back to the place before the last jump", "b alt-left", also="pins:BACK")
@@ -98,36 +105,147 @@ def skip_blank(reader: Reader) -> None:
 def surface_page(reader: Reader, step: int) -> None:
     if not reader.turn_page(step):
         reader.refuse("no next page" if step > 0 else "no previous page")
-    elif not reader.surface.rows:
+    elif not reader.rows:
         reader.announce()
+
+
+# By time
 
 
 @command("autoscroll on or off", "v f6")
 def autoscroll(reader: Reader) -> None:
-    reader.scroll(0.0 if reader.scroll_cells_s else USUAL_CELLS_S)
-    reader.say(_speed(reader))
+    _scroll(reader, 0.0 if reader.scroll_cells_s else _USUAL)
 
 
 @command("faster autoscroll", "+ f8")
 def faster(reader: Reader) -> None:
-    _scroll(reader, _FASTER)
+    _scroll(reader, min((reader.scroll_cells_s or _USUAL) * _FASTER, max(_SPEEDS)))
 
 
 @command("slower autoscroll", "- f7", "-")
 def slower(reader: Reader) -> None:
-    _scroll(reader, 1 / _FASTER)
+    _scroll(reader, max((reader.scroll_cells_s or _USUAL) / _FASTER, min(_SPEEDS)))
 
 
-def _scroll(reader: Reader, factor: float) -> None:
-    low, high = _SPEEDS
-    speed = min(max((reader.scroll_cells_s or USUAL_CELLS_S) * factor, low), high)
-    if speed == reader.scroll_cells_s:
-        reader.refuse(f"{_speed(reader)} is the {'most' if factor > 1 else 'least'}")
+def _scroll(reader: Reader, cells_s: float) -> None:
+    said = f"autoscroll: {cells_s:.1f} cells a second" if cells_s else "autoscroll: off"
+    if cells_s == reader.scroll_cells_s:
+        reader.refuse(f"{said} is the {'most' if cells_s == max(_SPEEDS) else 'least'}")
+    else:
+        reader.scroll(cells_s)
+        reader.say(said)
+
+
+# Where one is
+
+
+@command("say line, page, percent and heading", "i", "delete", first=True, also="pins:INFO")
+def info(reader: Reader) -> None:
+    here = reader.figure_here
+    page = heading = ""
+    for number, block in enumerate(reader.book.source.blocks(reader.line.block.number, -1)):
+        page = page or block.page_number
+        heading = heading or (block.heading[1] if block.heading else "")
+        if (page and heading) or number > _LOOKED_BACK:
+            break
+    if not page and reader.has_pages is False:
+        page = f"{(reader.layout.number(reader.line) - 1) // LINES_PER_PAGE + 1} in braille"
+    said = (
+        here and f"figure: {here[0]}",
+        reader.named(),
+        page and f"page {page}",
+        f"{100 * reader.layout.progress(reader.line):.0f} percent",
+        heading and f"heading: {heading}",
+    )
+    reader.say(", ".join(filter(None, said)))
+
+
+@command("say what is under the finger", "u", also="pins:DESCCHAR")
+def under_finger(reader: Reader) -> None:
+    here = reader.figure_here
+    if here is not None:
+        reader.say(f"figure: {here[0]}, here: {here[1] or 'nothing with a name'}")
+    else:
+        reader.say(reader.cell_said(reader.cell))
+
+
+@command("say the word under the finger", "w", also="pins:SPEAK_CURR_WORD")
+def say_word(reader: Reader) -> None:
+    reader.say(_word(reader) or "no word under the finger")
+
+
+@command("spell the word under the finger", "W", also="pins:SPELL_CURR_WORD")
+def spell_word(reader: Reader) -> None:
+    word = unicodedata.normalize("NFC", _word(reader))
+    reader.say(", ".join(map(letter_said, word)) or "no word under the finger")
+
+
+def _word(reader: Reader) -> str:
+    return "" if reader.cell is None else reader.line.word(reader.cell)
+
+
+@command("say the line again", "V f5", also="pins:SAY_LINE")
+def say_line(reader: Reader) -> None:
+    reader.say(reader.text or "blank line")
+
+
+# Bookmarks
+
+
+@command("set a bookmark with a name", "m", first=True)
+def bookmark(reader: Reader) -> None:
+    reader.ask("name of the bookmark", lambda name: _set(reader, name.strip()))
+
+
+@command("set a bookmark with a number", "M", also="pins:SETMARK")
+def number_bookmark(reader: Reader) -> None:
+    _set(reader, "")
+
+
+def _set(reader: Reader, name: str) -> None:
+    names = reader.kept.bookmarks
+    name = name or str(next(n for n in range(1, len(names) + 2) if str(n) not in names))
+    reader.kept.set_bookmark(name, reader.place, around(reader.line))
+    reader.say(f"bookmark {name}: set at {reader.named()}")
+
+
+@command("go to a bookmark", "o", also="pins:GOTOMARK")
+def go_to_bookmark(reader: Reader) -> None:
+    _choose(reader, "go to bookmark", lambda name, place: reader.jump(place, f"bookmark {name}"))
+
+
+@command("delete a bookmark", "delete X", "X")
+def delete_bookmark(reader: Reader) -> None:
+    def remove(name: str, _place: int) -> None:
+        reader.kept.remove_bookmark(name)
+        reader.say(f"bookmark {name}: deleted")
+
+    _choose(reader, "delete bookmark", remove)
+
+
+def _choose(reader: Reader, question: str, use: Callable[[str, int], object]) -> None:
+    marks = reader.kept.bookmarks
+    if not marks:
+        reader.refuse("no bookmarks")
         return
-    reader.scroll(speed)
-    reader.say(_speed(reader))
+
+    def answer(typed: str) -> None:
+        name = typed.strip()
+        if name in marks:
+            use(name, marks[name])
+        elif not name:
+            reader.say("cancelled")
+        else:
+            reader.say(f"no bookmark {name!r}; {_listed(reader)}", Cue.NOT_FOUND)
+
+    reader.ask(question, answer, list(marks)[::-1])
 
 
-def _speed(reader: Reader) -> str:
-    speed = reader.scroll_cells_s
-    return f"autoscroll: {speed:.1f} cells a second" if speed else "autoscroll: off"
+@command("say the bookmarks", "B")
+def say_bookmarks(reader: Reader) -> None:
+    reader.say(_listed(reader))
+
+
+def _listed(reader: Reader) -> str:
+    names = reader.kept.bookmarks
+    return f"bookmarks: {', '.join(names)}" if names else "no bookmarks"

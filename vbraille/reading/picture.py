@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
-from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.feeling.aperture import ZOOMS, Aperture
-from vbraille.feeling.composing import compose, viewed
-from vbraille.feeling.index import SceneIndex
-from vbraille.feeling.loading import FileWatch, check_fits, load_scene
-from vbraille.reading.commands import Where
+from vbraille.pictures.aperture import ZOOMS, Aperture
+from vbraille.pictures.composing import compose, viewed
+from vbraille.pictures.index import SceneIndex
+from vbraille.pictures.loading import FileWatch, check_fits, load_scene
+from vbraille.reading.commands import Where, both_ways, command
 from vbraille.reading.explored import Explored
 from vbraille.reading.outputs import Cue
+from vbraille.scene.checking import kind_of
 from vbraille.scene.measures import MOST_MM
-from vbraille.scene.signals import Switch, packed
+from vbraille.scene.signals import MOST_KEYS, Switch, packed
+from vbraille.scene.traversal import each
 from vbraille.simulation.steering import GlideTo, ReadPage
 
 if TYPE_CHECKING:
@@ -25,18 +27,24 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.feeling.index import NamedElement, Spot
-    from vbraille.feeling.loading import LoadedScene
+    from vbraille.pictures.index import NamedElement, Spot
+    from vbraille.pictures.loading import LoadedScene
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.outputs import Output
     from vbraille.render.program import Program
+    from vbraille.scene.scene import Canvas
 
 Point = tuple[float, float]
-KEYED_MM_S, LED_MM_S = 60.0, 100.0  # as a hand that explores goes, and one that is led
+_KEYED_MM_S, _LED_MM_S = 60.0, 100.0  # as a hand that explores goes, and one that is led
 _THERE_MM = 3.0
 _MOVED_MM = 0.2  # a hand that moved less is asked about no more
-_LINE_MM = 10.0  # between the lines that a hand goes along which goes by itself
+_LINE_MM = 10.0  # between the lines that a hand goes along which goes by itself, or is moved to
 _WAY_EVERY_S = 1.0
+_PAN = 0.5  # of what is within reach
+_CONTRAST_STEP = 0.1
+SAID = ("not said", "said", "said, with sounds")  # elements as the finger comes to them
+_NOWHERE = math.nan, math.nan
+_command = partial(command, where=Where.PICTURE | Where.FIGURE)
 
 
 def way(place: Point, to: Point) -> str:
@@ -52,6 +60,12 @@ def way(place: Point, to: Point) -> str:
     return ", ".join(ways) or "less than 1 mm"
 
 
+def sweep(canvas: Canvas) -> ReadPage:
+    """Order for a simulated hand that goes over a canvas, line after line."""
+    lines = max(1, round(canvas.height_mm / _LINE_MM))
+    return ReadPage(lines, canvas.height_mm / lines, canvas.width_mm)
+
+
 class Picture(Explored):
     """A picture, and the part of it within reach of the hand.
 
@@ -63,16 +77,12 @@ class Picture(Explored):
         As of `Explored`.
     where
         Where.PICTURE, or Where.FIGURE for a figure of a book.
-    rate_hz
-        Frames a second.
     y_mm
         Height at which an array is that moves along x alone; None for one where the picture is
         felt, near the middle of the canvas.
-    entering, sound
-        Whether each element is said when the finger comes to it, and what plays its sound; None if
-        none is played.
-    watched
-        Whether the picture is read again when its file has changed.
+    saying, sound
+        Whether elements are said when the finger comes to them, as in `SAID`, and what plays their
+        sounds; None if none is played.
     goes
         Whether a simulated hand goes over the picture by itself; without a person at a keyboard
         that is all.
@@ -87,8 +97,6 @@ class Picture(Explored):
         The picture at its zoom.
     spot : Spot or None
         What the finger is on.
-    goal : tuple or None
-        Name and place that the hand is on its way to.
     """
 
     doing = "feeling"
@@ -101,44 +109,37 @@ class Picture(Explored):
         key_set: str = "usual",
         *,
         where: Where = Where.PICTURE,
-        rate_hz: float = 1000.0,
         y_mm: float | None = None,
-        entering: bool = False,
+        saying: int = 0,
         sound: Callable[[Path], None] | None = None,
-        sounding: bool = False,
-        watched: bool = False,
         goes: bool = False,
         attended: bool = True,
         zoom: float = 1.0,
     ) -> None:
         super().__init__(device, outputs, key_set)
-        self.where, self.loaded, self.contrast = where, loaded, 1.0
-        self.entering, self.sounding, self._sound = entering or sounding, sounding, sound
-        self._rate_hz, self._attended = rate_hz, attended
-        self._goes = goes and device.steered
-        self._watch = FileWatch(Path(loaded.opened.path)) if watched else None
+        self.where, self.loaded, self._contrast = where, loaded, 1.0
+        self._sound, self._saying = sound, saying
+        self._attended, self._goes = attended, goes and device.steered
+        self._watch = FileWatch(Path(loaded.opened.path)) if where is Where.PICTURE else None
         self.aperture = Aperture((device.display.travel_mm, device.display.height_mm), zoom)
         self.spot: Spot | None = None
-        self.goal: tuple[str, Point] | None = None
+        self._goal: tuple[str, Point] | None = None  # that the hand is on its way to
         self._said_s = -math.inf
         self._outside = False  # whether it is to be seen if a person's finger is on the picture
         self._aim: Point | None = None  # where keys have sent the hand
-        self._looked_at = (math.nan, math.nan)
-        self.states: dict[int, int] = {}  # of the picture's switches, by their keys
-        self.element = -1  # number of the element that was gone to last
-        self._maker = ThreadPoolExecutor(1)  # makes the picture at another zoom
-        self._making: tuple[float, Future[tuple[LoadedScene, Program]]] | None = None
+        self._looked_at = _NOWHERE
+        self._states: dict[int, int] = {}  # of the picture's switches, by their keys
+        self._element = -1  # number of the element that was gone to last
         self._number = 0
         self._chosen = y_mm is not None
         self._y_mm = zoom * (loaded.scene.canvas.height_mm / 2 if y_mm is None else y_mm)
-        shown = loaded.zoomed(zoom)
-        self._take(shown, self._compose(shown))
+        self._take(*self._made(loaded, zoom))
 
     def begin(self) -> None:
         """Show the picture where something of it is felt, and say what it is."""
         if not (self.flat or self._chosen):
             self._y_mm = self.index.inside()[1]
-        self.show()
+        self._show()
         self.steer()
         self.say_picture()
         if not self.flat:
@@ -150,7 +151,7 @@ class Picture(Explored):
     @property
     def flat(self) -> bool:
         """Tell whether the carriage goes along y, too."""
-        return self.device.display.height_mm > 0
+        return self.display.height_mm > 0
 
     @property
     def place(self) -> Point | None:
@@ -169,138 +170,83 @@ class Picture(Explored):
     def steer(self) -> None:
         """Have a simulated hand go over the picture, or begin inside it."""
         if self._goes:
-            canvas = self.loaded.scene.canvas
-            lines = max(1, round(canvas.height_mm / _LINE_MM))
-            self.device.give(ReadPage(lines, canvas.height_mm / lines, canvas.width_mm))
+            self.device.give(sweep(self.loaded.scene.canvas))
         elif self.device.steered:
-            self.glide(self.index.inside(), LED_MM_S)
+            self._glide(self.index.inside(), _LED_MM_S)
         else:
             self._outside = self.flat or not self._chosen
 
     # What is shown
 
-    def _compose(self, loaded: LoadedScene) -> Program:
-        how = {"rate_hz": self._rate_hz, "contrast": self.contrast}
-        return compose(loaded, self.device.display, **how)
+    def _made(self, loaded: LoadedScene, zoom: float) -> tuple[LoadedScene, Program]:
+        """Picture at a zoom, with its program."""
+        shown = loaded.zoomed(zoom)
+        display = self.display
+        program = compose(shown, display, rate_hz=display.rate_hz, contrast=self._contrast)
+        return shown, program
 
     def _take(self, shown: LoadedScene, program: Program) -> None:
+        before = self.index.elements[self._element].name if self._element >= 0 else ""
         self.shown, self._program = shown, program
-        before = self.index.elements[self.element].name if self.element >= 0 else ""
         self.index = SceneIndex(shown.scene, shown.assets, shown.boxes())
         names = [element.name for element in self.index.elements]
-        self.element = names.index(before) if before in names else -1
+        self._element = names.index(before) if before in names else -1
         self.spot = self._aim = None
         self._switch()
 
-    def show(self) -> None:
+    def _switch(self) -> None:
+        states = packed(self._states, self.loaded.scene.signals)
+        self.device.engine.switches = self.index.switches = states
+        self._looked_at = _NOWHERE
+
+    def _show(self) -> None:
         """Show the part within reach; what it replaces fades."""
         self._number += 1
-        self._looked_at = (math.nan, math.nan)
+        self._looked_at = _NOWHERE
         origin_mm = self.aperture.left_mm, self.aperture.top_mm
         self.device.put(viewed(self._program, self._y_mm, origin_mm), self._number)
 
-    def set_contrast(self, contrast: float) -> None:
-        """Show the picture with a share of the actuators' swing."""
-        self.contrast = contrast
-        self._program = self._compose(self.shown)
-        self.show()
-
-    def choose_height(self, y_mm: float) -> None:
+    def _choose_height(self, y_mm: float) -> None:
         """Show the line of the picture at another height, on a device of one axis."""
         self._y_mm = min(max(y_mm, 0.0), self.shown.scene.canvas.height_mm)
-        self.show()
+        self._show()
         self.say(f"height: {self.height}")
 
-    def look_from(self, aperture: Aperture) -> None:
+    def _look_from(self, aperture: Aperture) -> None:
         """Show the picture from elsewhere on the canvas, at the same zoom."""
         self.aperture, self._aim = aperture, None
-        self.show()
-        self.say_aperture()
+        self._show()
+        self.say_zoom()
 
-    def zoom(self, step: int) -> None:
+    def _zoom(self, step: int) -> None:
         """Have the picture nearer or farther by a step, about the finger."""
-        canvas = self.loaded.scene.canvas
-        now = self.aperture.zoom if self._making is None else self._making[0]
+        canvas, now = self.loaded.scene.canvas, self.aperture.zoom
         most = MOST_MM / max(canvas.width_mm, canvas.height_mm)
         others = [zoom for zoom in ZOOMS if zoom <= most and (zoom - now) * step > 0]
         if others:
-            self.zoom_to(min(others) if step > 0 else max(others))
+            self._zoom_to(min(others, key=lambda zoom: abs(zoom - now)))
         else:
             self.refuse(f"zoom: {now:g} is the {'most' if step > 0 else 'least'}")
 
-    def zoom_to(self, zoom: float) -> None:
-        """Begin to make the picture at a zoom; what is felt stays until that is done."""
-        loaded = self.loaded
-
-        def make() -> tuple[LoadedScene, Program]:
-            shown = loaded.zoomed(zoom)
-            return shown, self._compose(shown)
-
-        self._making = zoom, self._maker.submit(make)
-
-    def _take_zoom(self) -> None:
-        if self._making is None or not self._making[1].done():
-            return
-        (zoom, made), self._making = self._making, None
+    def _zoom_to(self, zoom: float) -> None:
         try:
-            shown, program = made.result()
+            made = self._made(self.loaded, zoom)
         except InputError as error:
             self.say(f"zoom: still {self.aperture.zoom:g}; {error}", Cue.NOT_FOUND)
             return
         pose = self.device.pose
         at_mm = (0.0, 0.0) if pose is None else (pose.x_mm, pose.y_mm)
-        share = zoom / self.aperture.zoom
-        self._y_mm *= share
-        if self.goal is not None:
-            name, (x_mm, y_mm) = self.goal
-            self.goal = name, (x_mm * share, y_mm * share)
-        whole = zoom == 1.0 and self.aperture.zoomed(1.0, at_mm).is_whole
+        self._y_mm *= zoom / self.aperture.zoom
+        self._goal = None
+        self._take(*made)
         zoomed = self.aperture.zoomed(zoom, at_mm)
-        self.aperture = Aperture(self.aperture.reach_mm) if whole else zoomed
-        self._take(shown, program)
-        self.show()
-        self.say_aperture()
-
-    def switch(self, key: int) -> None:
-        """Put a switch of the picture into its next state."""
-        signals = self.loaded.scene.signals.values()
-        switches = [one for one in signals if isinstance(one, Switch) and one.key == key]
-        if not switches:
-            self.refuse(f"the picture has no switch {key}")
-            return
-        self.states[key] = state = (self.states.get(key, 0) + 1) % len(switches[0].levels)
-        self._switch()
-        name = next((one.states[state] for one in switches if one.states), str(state + 1))
-        title = next((one.title for one in switches if one.title), f"switch {key}")
-        self.say(f"{title}: {name}")
-
-    def _switch(self) -> None:
-        states = packed(self.states, self.loaded.scene.signals)
-        self.device.engine.switches = self.index.switches = states
-        self._looked_at = (math.nan, math.nan)
-
-    def reload(self) -> None:
-        """Read the file again, and show what it holds now; what is wrong with it is said."""
-        try:
-            loaded = load_scene(self.loaded.opened.path, self.device.model.style)
-            check_fits(loaded.scene, self.device.display)
-            shown = loaded.zoomed(self.aperture.zoom)
-            program = self._compose(shown)
-        except InputError as error:
-            self.say(f"not reloaded: {error}; the picture is as it was", Cue.NOT_FOUND)
-            return
-        self.loaded, self.states, self._making = loaded, {}, None
-        self._take(shown, program)
-        self.show()
-        self.say(f"reloaded: {loaded.title}")
-        for note in loaded.notes:
-            self.say(f"note: {note}")
+        whole = zoom == 1.0 and zoomed.is_whole
+        self._look_from(Aperture(self.aperture.reach_mm) if whole else zoomed)
 
     # Where the hand is
 
     def idle(self, now_s: float) -> None:
         """Say what the finger comes to, and the way to what is sought."""
-        self._take_zoom()
         if self._watch is not None and self._watch.changed():
             self.reload()
         place = self.place
@@ -309,72 +255,61 @@ class Picture(Explored):
         if self._outside:  # unless the finger is on the picture by chance
             self._outside = False
             if self.index.where(*place) is None:
-                self.goal = "picture", self.index.inside()
-        self._say_way(place, now_s)
-        if math.dist(place, self._looked_at) >= _MOVED_MM or math.isnan(self._looked_at[0]):
+                self._goal = "picture", self.index.inside()
+        if self._goal is not None:
+            self._say_way(place, now_s, *self._goal)
+        if not math.dist(place, self._looked_at) < _MOVED_MM:
             self._looked_at = place
-            self._look(place)
+            before, self.spot = self.spot, self.index.where(*place)
+            if self._saying and self.spot != before:
+                self._say_coming(place, before)
 
     def follow(self, ticks: NDArray[np.void]) -> None:  # noqa: ARG002 - the place is known
         """Note that another person holds the hand, and that a hand has gone over all."""
         if self.device.held:  # keys move the hand from where it was left
             self._aim = None
-        if self._goes and not self._attended and self.device.hand_done():
+        if self._goes and not self._attended and self.device.hand_done:
             self.done = True
 
-    def _say_way(self, place: Point, now_s: float) -> None:
-        if self.goal is None:
-            return
-        name, to = self.goal
+    def _say_way(self, place: Point, now_s: float, name: str, to: Point) -> None:
         to = to if self.flat else (to[0], place[1])
         if math.dist(place, to) <= _THERE_MM:
-            self.goal = None
+            self._goal = None
             self.say(f"there: {name}")
         elif not self.device.steered and now_s - self._said_s >= _WAY_EVERY_S:
             self._said_s = now_s
             self.say(f"way: {way(place, to)}")
 
-    def _look(self, place: Point) -> None:
-        before, self.spot = self.spot, self.index.where(*place)
+    def _say_coming(self, place: Point, before: Spot | None) -> None:
+        """Say the element that the finger has come to, and the one that it has left."""
         spot = self.spot
-        if not self.entering or spot == before:
-            return
-        if before is not None and (spot is None or spot.element is not before.element):
-            if not self.index.encloses(before.element, *place):
-                self.say(f"leaving: {before.element.name}")
-            before = None
-        if spot is None:
-            return
-        if before is not None:
+        if spot is not None and before is not None and spot.element is before.element:
             self.say(f"{spot.where}: {spot.element.name}")
             return
-        pattern = spot.element.pattern
-        self.say(pattern.words or f"entering: {spot.element.name}")
-        if self.sounding and pattern.sound and self._sound is not None:
-            self._sound(self.loaded.opened.folder / pattern.sound)
+        if before is not None and not self.index.encloses(before.element, *place):
+            self.say(f"leaving: {before.element.name}")
+        if spot is not None:
+            pattern = spot.element.pattern
+            self.say(pattern.words or f"entering: {spot.element.name}")
+            if self._saying > 1 and pattern.sound and self._sound is not None:
+                self._sound(self.loaded.opened.folder / pattern.sound)
 
-    @property
-    def has_sounds(self) -> bool:
-        """Tell whether elements have sounds that can be played."""
-        sounds = any(element.pattern.sound for element in self.index.elements)
-        return sounds and self._sound is not None
-
-    def lead(self, name: str, to: Point) -> None:
+    def _lead(self, name: str, to: Point) -> None:
         """Have a simulated hand go to a place, or say the way there to a person.
 
         Where the place is out of reach, the picture is moved so that it is within.
         """
         brought = self.aperture.reaching(*to)
         if brought != self.aperture:
-            self.look_from(brought)
+            self._look_from(brought)
         if not self.flat:
-            self.choose_height(to[1])
-        self.goal, self._said_s = (name, to), -math.inf
-        self.glide(to, LED_MM_S)
+            self._choose_height(to[1])
+        self._goal, self._said_s = (name, to), -math.inf
+        self._glide(to, _LED_MM_S)
 
-    def glide(self, to: Point, speed_mm_s: float) -> None:
+    def _glide(self, to: Point, speed_mm_s: float) -> None:
         """Have a simulated hand glide to a place of the canvas."""
-        display = self.device.display
+        display = self.display
         x_mm, y_mm = self.aperture.of_carriage(*to)
         half_mm = display.span_mm / 2
         x_mm = min(max(x_mm, -half_mm), display.travel_mm - half_mm)
@@ -382,35 +317,252 @@ class Picture(Explored):
         self._aim = self.aperture.on_canvas(x_mm, y_mm)
         self.device.give(GlideTo(x_mm, y_mm, speed_mm_s))
 
-    def move(self, right_mm: float, down_mm: float) -> bool:
-        """Move a simulated hand; False for a person's."""
-        begun = self._aim or self.place
-        if not self.device.steered or begun is None:
-            return False
-        self.goal = None
-        self.glide((begun[0] + right_mm, begun[1] + down_mm), KEYED_MM_S)
-        return True
-
-    def go_to(self, element: NamedElement) -> None:
+    def _go_to(self, number: int) -> None:
         """Go to an element, or say the way there."""
-        self.element = self.index.elements.index(element)
+        self._element, element = number, self.index.elements[number]
         self.say(f"going to: {element.name}" if self.device.steered else element.name)
-        self.lead(element.name, self.index.point_on(element))
+        self._lead(element.name, self.index.point_on(element))
 
-    # What is said
+    # Commands: what is said
 
+    @command("back to the text", "G", "E", where=Where.FIGURE, first=True)
+    def leave(self) -> None:
+        """Go back to the text."""
+        self.done = True
+
+    @_command("say the way to an element no more", "escape")
+    def cancel(self) -> None:
+        """Say the way no more; without one, leave a figure."""
+        if self._goal is not None:
+            self._goal = None
+            self.say("way: no longer said")
+        elif self.where is Where.FIGURE:
+            self.done = True
+        else:
+            self.refuse("nothing to cancel")
+
+    @_command(
+        "say what is under the finger, and where", "i u", also="button:1", first=True, steers=True
+    )
+    def say_here(self) -> None:
+        """Say what is under the finger, and where."""
+        place = self.place
+        if place is None:
+            self.say("the place of the finger is not known yet")
+            return
+        spot = self.index.where(*place)
+        if spot is None:
+            said = f"nothing with a name{self._nearest(place)}"
+        else:
+            where = {"edge": "edge of ", "inside": "inside "}.get(spot.where, "")
+            said = f"{where}{spot.element.name}"
+        self.say(f"here: {said}; {self.aperture.placed(*place)}")
+
+    def _nearest(self, place: Point) -> str:
+        found = self.index.nearest(*place)
+        return "" if found is None else f", nearest {found[0].name}, {way(place, found[1])}"
+
+    @_command("say more of what is under the finger", "w", also="button:2")
+    def describe(self) -> None:
+        """Say more of what is under the finger."""
+        place = self.place
+        spot = None if place is None else self.index.where(*place)
+        if spot is not None:
+            element = spot.element
+            self.say(f"{element.name}: {element.description or self._looks(element)}")
+        else:
+            self.say(f"nothing here{'' if place is None else self._nearest(place)}")
+
+    def _looks(self, element: NamedElement) -> str:
+        """Words for an element that says nothing of itself: its kind, its size, its textures."""
+        kinds = [kind_of(one).replace("-", " ") for one in each(element.pattern)]
+        inner = dict.fromkeys(kind for kind in kinds[1:] if kind != "use")
+        parts = f" with {', '.join(inner)}" if inner else ""
+        return f"{kinds[0]}, {self.aperture.sized(element.box)}{parts}"
+
+    @_command("say what the picture is", "V f5")
     def say_picture(self) -> None:
         """Say the title, the size and the description of the picture."""
         scene = self.loaded.scene
-        self.say(
-            f"{self.loaded.title}, {scene.canvas.width_mm:g} mm × {scene.canvas.height_mm:g} mm"
-        )
+        size = f"{scene.canvas.width_mm:g} mm × {scene.canvas.height_mm:g} mm"
+        self.say(f"{self.loaded.title}, {size}")
         if scene.description:
             self.say(f"description: {scene.description}")
         if not self.aperture.is_whole:
-            self.say_aperture()
+            self.say_zoom()
 
-    def say_aperture(self) -> None:
+    @_command("list the elements that have a name", "O", first=True)
+    def elements(self) -> None:
+        """List the elements that have a name."""
+        if not self.index.elements:
+            self.refuse("no element has a name")
+        for element in self.index.elements:
+            box = element.box
+            middle = (box.left + box.right) / 2, (box.top + box.bottom) / 2
+            said = f"{self.aperture.sized(box)}, middle {self.aperture.placed(*middle)}"
+            self.say(f"{element.name}: {'outside' if box.is_empty else said}")
+
+    @_command(
+        "say each element as the finger comes to it, with its sound, or not", "v f6", steers=True
+    )
+    def entering(self) -> None:
+        """Say elements as the finger comes to them, with sounds if there are any, or not."""
+        sounds = any(element.pattern.sound for element in self.index.elements)
+        states = 3 if sounds and self._sound is not None else 2
+        self._saying = (self._saying + 1) % states
+        self.say(f"elements: {SAID[self._saying]} as you come to them")
+
+    @_command("say the zoom, and what is within reach", "z")
+    def say_zoom(self) -> None:
         """Say the zoom, and which part of the picture is within reach."""
         words = self.aperture.words(self.shown.scene.canvas)
         self.say(f"zoom: {self.aperture.zoom:g}, within reach {words}")
+
+    # Commands: where the hand and the picture go
+
+    @_command("go to an element by its name", "g /", first=True)
+    def go_to(self) -> None:
+        """Ask for an element, and go there."""
+
+        def answer(typed: str) -> None:
+            element = self.index.find(typed) if typed.strip() else None
+            if element is None:
+                self.say(f"no element {typed!r}; shift-o lists them", Cue.NOT_FOUND)
+            else:
+                self._go_to(self.index.elements.index(element))
+
+        names = [element.name for element in self.index.elements]
+        self.ask("element", answer, names[::-1])
+
+    @both_ways("element", "n e p E", "n e p", first=True, where=Where.PICTURE | Where.FIGURE)
+    def element(self, step: int) -> None:
+        """Go to the next element, or to the one before."""
+        count = len(self.index.elements)
+        number = count - 1 if self._element < 0 and step < 0 else self._element + step
+        if 0 <= number < count:
+            self._go_to(number)
+        else:
+            self.refuse(f"no {'next' if step > 0 else 'previous'} element")
+
+    @_command("go to the middle of the picture", "home")
+    def middle(self) -> None:
+        """Go to the middle of the picture."""
+        canvas = self.shown.scene.canvas
+        self.say("going to: middle")
+        self._lead("middle", (canvas.width_mm / 2, canvas.height_mm / 2))
+
+    def move(self, right_mm: float, down_mm: float) -> None:
+        """Move a simulated hand; for a person, the line that is felt, or to another element."""
+        begun = self._aim or self.place
+        if down_mm and not self.flat:
+            self._choose_height(self._y_mm + down_mm)
+        elif self.device.steered and begun is not None:
+            self._goal = None
+            self._glide((begun[0] + right_mm, begun[1] + down_mm), _KEYED_MM_S)
+        else:
+            self.element(1 if right_mm + down_mm > 0 else -1)
+
+    def pan(self, right: float, down: float) -> None:
+        """Show a part of the picture farther on, by shares of what is within reach."""
+        if down and not self.flat:
+            self.move(0, math.copysign(_LINE_MM, down))
+            return
+        moved = self.aperture.panned(right, down, self.shown.scene.canvas)
+        if moved == self.aperture:
+            self.refuse("no more of the picture that way")
+        else:
+            self._look_from(moved)
+
+    def switch(self, key: int) -> None:
+        """Put a switch of the picture into its next state."""
+        signals = self.loaded.scene.signals.values()
+        switches = [one for one in signals if isinstance(one, Switch) and one.key == key]
+        if not switches:
+            self.refuse(f"the picture has no switch {key}")
+            return
+        self._states[key] = state = (self._states.get(key, 0) + 1) % len(switches[0].levels)
+        self._switch()
+        name = next((one.states[state] for one in switches if one.states), str(state + 1))
+        title = next((one.title for one in switches if one.title), f"switch {key}")
+        self.say(f"{title}: {name}")
+
+    @_command("nearer, about the finger", "+ =", also="button:6", first=True, steers=True)
+    def zoom_in(self) -> None:
+        """Have the picture nearer."""
+        self._zoom(1)
+
+    @_command("farther, about the finger", "-", also="button:7", steers=True)
+    def zoom_out(self) -> None:
+        """Have the picture farther."""
+        self._zoom(-1)
+
+    @_command("the whole picture again, as written", "0", also="button:8", steers=True)
+    def whole(self) -> None:
+        """Show the whole picture again."""
+        if self.aperture.zoom == 1.0:
+            self._look_from(Aperture(self.aperture.reach_mm))
+        else:
+            self._zoom_to(1.0)
+
+    @_command("more contrast", "c")
+    def more_contrast(self) -> None:
+        """Show the picture with more contrast."""
+        self.contrast(_CONTRAST_STEP)
+
+    @_command("less contrast", "C")
+    def less_contrast(self) -> None:
+        """Show the picture with less contrast."""
+        self.contrast(-_CONTRAST_STEP)
+
+    def contrast(self, by: float) -> None:
+        """Show the picture with another share of the actuators' swing."""
+        contrast = round(min(max(self._contrast + by, _CONTRAST_STEP), 1.0), 2)
+        if contrast == self._contrast:
+            self.refuse(f"contrast: {contrast:g} is the {'most' if by > 0 else 'least'}")
+            return
+        self._contrast = contrast
+        self._take(*self._made(self.loaded, self.aperture.zoom))
+        self._show()
+        self.say(f"contrast: {contrast:g}")
+
+    @command("read the file of the picture again", "ctrl-r", where=Where.PICTURE)
+    def reload(self) -> None:
+        """Read the file again, and show what it holds now; what is wrong with it is said."""
+        try:
+            loaded = load_scene(self.loaded.opened.path, self.device.model.style)
+            check_fits(loaded.scene, self.display)
+            made = self._made(loaded, self.aperture.zoom)
+        except InputError as error:
+            self.say(f"not reloaded: {error}; the picture is as it was", Cue.NOT_FOUND)
+            return
+        self.loaded, self._states = loaded, {}
+        self._take(*made)
+        self._show()
+        self.say(f"reloaded: {loaded.title}")
+        for note in loaded.notes:
+            self.say(f"note: {note}")
+
+
+def _add_ways() -> None:
+    ways = {
+        "right": (1, 0, "]", 10), "left": (-1, 0, "[", 9),
+        "down": (0, 1, "}", 12), "up": (0, -1, "{", 11),
+    }  # fmt: skip
+    for name, (right, down, bracket, button) in ways.items():
+        _command(f"part of the picture farther {name}", f"ctrl-{name} {bracket}",
+                 name=f"pan-{name}", also=f"button:{button}", steers=True)(
+            partial(Picture.pan, right=_PAN * right, down=_PAN * down)
+        )  # fmt: skip
+        for prefix, mm in (("", 1.0), ("shift-", 10.0)):
+            help_ = f"{mm:g} mm {name}; with the device in your own hand, another element"
+            _command(help_, prefix + name, name=f"move-{prefix}{name}")(
+                partial(Picture.move, right_mm=mm * right, down_mm=mm * down)
+            )
+    for key in range(1, MOST_KEYS + 1):
+        button = {1: "button:4", 2: "button:5"}.get(key, "")
+        _command(f"switch {key} of the picture", str(key), name=f"switch-{key}", also=button)(
+            partial(Picture.switch, key=key)
+        )
+
+
+_add_ways()

@@ -7,10 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.cells import dots_of
 from vbraille.errors import InputError
-from vbraille.knobs import KNOBS
 from vbraille.layout import Layout, cells_per_line
 from vbraille.reading.commands import Where
-from vbraille.reading.explored import Explored
 from vbraille.reading.hand import HELD, HandWatch, too_fast_note
 from vbraille.reading.outputs import Cue
 from vbraille.reading.places import around, nearest
@@ -25,6 +23,7 @@ if TYPE_CHECKING:
 
     from vbraille.layout import Line
     from vbraille.reading.device import ReadingDevice
+    from vbraille.reading.figures import BookFigures
     from vbraille.reading.outputs import Output
     from vbraille.reading.places import KeptBook
     from vbraille.render import BrailleStyle
@@ -34,10 +33,9 @@ if TYPE_CHECKING:
 _GATHERED = 20  # blocks at a time, for a search to come
 _KEPT_EVERY_S, _WATCHED_EVERY_S = 0.3, 0.5
 _TRAIL = 100  # places that are kept to go back to
-USUAL_CELLS_S = 8.0  # of autoscroll
 
 
-class Reader(Explored):
+class Reader(Surface):
     """A book, the line of it under the hand, and the style that it is shown in.
 
     Parameters
@@ -67,8 +65,6 @@ class Reader(Explored):
 
     Attributes
     ----------
-    surface : Surface
-        What lies under the hand.
     back : list[int]
         Places before jumps.
     undo : list[BrailleStyle]
@@ -97,24 +93,23 @@ class Reader(Explored):
         attended: bool = True,
         by_hand: bool = True,
         echo: str = "none",
-        figures: Any = None,
+        figures: BookFigures | None = None,
         save: Callable[[BrailleStyle], str] | None = None,
         changed: Callable[[], Book | None] = lambda: None,
     ) -> None:
-        super().__init__(device, outputs, key_set)
-        self.layout, self.kept, self.save, self.figures = layout, kept, save, figures
+        style = device.model.style
+        super().__init__(device, outputs, key_set, style, figures=figures, by_hand=by_hand)
+        self.layout, self.kept, self.save, self.attended = layout, kept, save, attended
         self.first, self.last = lines
-        self.attended, self.by_hand = attended, by_hand
         self._fixed, self._echo, self._changed = fixed, echo, changed
         self.back: list[int] = []
         self.undo: list[BrailleStyle] = []
         self.pattern: re.Pattern[str] | None = None  # what is searched for
         self.forward = True
-        self.found: int | None = None  # place of the last hit or mark that was gone to
+        self._found: int | None = None  # place of the last hit or mark that was gone to
         self.typed: dict[str, list[str]] = {}  # by question
         self.skip_blank = False
-        self.scroll_cells_s = 0.0  # cells a second at which lines come by time; 0 for by hand
-        self._cells_due = 0.0
+        self.scroll_cells_s = self._cells_due = 0.0  # cells a second by time; 0 for by hand
         self._ticked_s = self._kept_s = self._watched_s = 0.0
         self._unkept: Line | None = None
         self.finished = False  # whether the end was said
@@ -123,22 +118,17 @@ class Reader(Explored):
         self.beside_mapping: Mapping | None = None  # that the live view shows beside the array
         self.lines_read = 0
         self._too_fast_said = self._figure_due = False
-        self.surface = Surface(
-            device, device.model.style, self._neighbour, figures, by_hand=by_hand
-        )
-        self.show(self._first_line())
-        self.found = None
+        self.show(self._line_to_begin())
 
-    def _first_line(self) -> Line:
+    def _line_to_begin(self) -> Line:
         """Line at the place that is kept, or the first of those to read."""
         place = self.kept.find(self.book.source, self.say)
         found = self.layout.place(place) if place else None
         if found is not None and self.has(found[0]):
             return found[0]
-        line = self.layout.first() if self.first == 1 else self.layout.line(self.first)
+        line = self.first_line()
         if line is None:
-            count = self.layout.count()
-            name = self.book.source.name
+            name, count = self.book.source.name, self.layout.count()
             if not count:
                 raise InputError(f"{name} has no text")
             raise InputError(f"{name} has {count} lines; line {self.first} is past the end")
@@ -152,14 +142,9 @@ class Reader(Explored):
         return self.layout.book
 
     @property
-    def style(self) -> BrailleStyle:
-        """Style that lines are shown in."""
-        return self.surface.style
-
-    @property
     def line(self) -> Line:
         """Line under the hand."""
-        return self.surface.part.line
+        return self.part.line
 
     @property
     def text(self) -> str:
@@ -176,27 +161,37 @@ class Reader(Explored):
         """Cell of the line under the finger; None if there is none."""
         if self.device.x_mm is None or self.figure_here:
             return None
-        return self.surface.part.cell_at(self.device.x_mm, self.style.geometry)
+        return self.part.cell_at(self.device.x_mm, self.style.geometry)
 
     @property
     def place(self) -> int:
         """Place in the text of the cell under the finger, or of the first that is shown."""
-        for cell in (self.cell, max(self.surface.part.first, 0)):
+        for cell in (self.cell, max(self.part.first, 0)):
             span = None if cell is None else self.line.source(cell)
             if span is not None:
                 return span[0]
         return self.line.place
 
     @property
+    def found_here(self) -> int | None:
+        """Place of the last hit or mark that was gone to, if it is on the line; otherwise None."""
+        line, found = self.line, self._found
+        return found if found is not None and line.place <= found < line.end else None
+
+    @property
     def figure_here(self) -> tuple[str, str] | None:
         """Titles of the figure of the page under the finger, and of its part there."""
-        if self.figures is None or not self.surface.figured:
+        if self.figures is None or not self.figured:
             return None
-        return self.figures.here(self.surface, self.device.pose)
+        return self.figures.here(self, self.device.pose)
 
-    def named(self, line: Line | None = None) -> str:
-        """Name of a line in sentences, such as "line 12"."""
-        return f"line {self.layout.number(line or self.line)}"
+    def named(self) -> str:
+        """Name of the line in sentences, such as "line 12"."""
+        return f"line {self.layout.number(self.line)}"
+
+    def first_line(self) -> Line | None:
+        """First line of those that are read."""
+        return self.layout.first() if self.first == 1 else self.layout.line(self.first)
 
     def has(self, line: Line) -> bool:
         """Tell whether a line is among those that are read."""
@@ -207,9 +202,10 @@ class Reader(Explored):
 
     def beside(self, step: int) -> Line | None:
         """Line after the one under the hand, or before it where the step is -1."""
-        return self._neighbour(self.line, step)
+        return self.neighbour(self.line, step)
 
-    def _neighbour(self, line: Line, step: int) -> Line | None:
+    def neighbour(self, line: Line, step: int) -> Line | None:
+        """Line after one, or before it, of those that are read."""
         following = self.layout.beside(line, step)
         while following is not None and self.skip_blank and not following.masks.any():
             following = self.layout.beside(following, step)
@@ -217,186 +213,148 @@ class Reader(Explored):
 
     def echoed(self, echo: str) -> Iterator[str]:
         """Sentences that are printed of the line: its number, its cells and its text."""
-        if echo == "none":
-            return
-        yield f"line: {self.layout.number(self.line)}"
-        if echo in ("cells", "both"):
-            yield f"cells: {self.line.printed.to_unicode()}"
-        if echo in ("text", "both"):
-            yield f"text: {self.text}"
+        if echo != "none":
+            yield f"line: {self.layout.number(self.line)}"
+        yield from super().echoed(echo)
 
     # What is under the hand
 
     def show(self, line: Line, cell: int = 0) -> None:
         """Put the part of a line with a cell under the hand."""
-        self._put(Part(line, self.surface.width).at(cell))
+        self._put(Part(line, self.width).at(cell))
 
     def _put(self, part: Part) -> None:
-        before = self.surface.parts and self.line
-        self.surface.put(part)
+        before = self.parts and self.line
+        self.put(part)
         self._arrive(another=before != part.line)
 
     def _arrive(self, *, another: bool = True) -> None:
         """Tell of the line that is under the hand now."""
-        line = self.line
         self.finished = False
-        self._unkept = line
-        self._cells_due = max(len(self.surface.part), 1)
-        turns = self.by_hand and not self.surface.rows
-        otherwise = "n brings the next line" if self.attended else "Ctrl-C stops"
+        self._unkept = self.line
+        self._cells_due = max(len(self.part), 1)
         self._watch = HandWatch(
-            self.device.display.span_mm,
-            self.surface.end_mm,
+            self.display.span_mm,
+            self.end_mm,
             self.named(),
-            by_hand=turns,
-            otherwise=otherwise,
+            by_hand=self.by_hand and not self.rows,
+            otherwise="n brings the next line" if self.attended else "Ctrl-C stops",
         )
-        if not another:
-            return
-        self.lines_read += 1
-        for output in self.outputs:
-            output.show(self)
-        self._figure_due = self.figures is not None
+        if another:
+            self.lines_read += 1
+            for output in self.outputs:
+                output.show(self)
+            self._figure_due = self.figures is not None
 
     def announce(self, what: str = "") -> None:
         """Say which line a command has led to, unless that is printed already."""
         if self._echo == "none":
             self.say(f"{what}, {self.named()}" if what else self.named())
 
-    def jump(self, place: int, what: str = "", *, remember: bool = True) -> bool:
-        """Go to a place of the text, and say what is there; False if that is not read."""
+    def jump(self, place: int, what: str = "", *, remember: bool = True) -> None:
+        """Go to a place of the text, and say what is there; refuse it if that is not read."""
         found = self.layout.place(place)
         if found is None or not self.has(found[0]):
             self.refuse("outside the lines being read")
-            return False
+            return
         if remember:
-            self.remember()
+            self._remember()
         line, cell = found
         if what and self._echo != "none":
             self.say(what)
-        if line == self.line and self.cell is not None:
-            self.bring_under(cell)
-        else:
-            self.show(line, cell)
-        self.found = place
+        self._bring(line, cell, under=line == self.line and self.cell is not None)
+        self._found = place
         self.announce(what)
-        return True
 
-    def remember(self) -> None:
-        """Have the present place be the one to go back to."""
+    def _remember(self) -> None:
         self.back.append(self.place)
         del self.back[:-_TRAIL]
 
-    def bring_under(self, cell: int) -> None:
-        """Move the line so that one of its cells is under the finger."""
-        self._put_under(self.line, cell, self._share or 0.0)
-
-    @property
-    def _share(self) -> float | None:
-        """Share of the cell under the finger that is to the left of it; None if there is none."""
-        x_mm = self.device.x_mm
-        if x_mm is None or self.cell is None:
-            return None
-        return (x_mm - self.surface.part.start_mm) / self.style.geometry.cell_pitch_mm % 1
-
-    def _put_under(self, line: Line, cell: int, share: float | None) -> None:
-        """Put a cell of a line under the finger; where there was none, its part of the line."""
-        x_mm = self.device.x_mm
-        if share is None or x_mm is None:
-            self.show(line, cell)
-            return
-        part = Part(line, self.surface.width)
-        self._put(part.under(cell, x_mm, self.style.geometry.cell_pitch_mm, share))
+    def _bring(self, line: Line, cell: int, *, under: bool) -> None:
+        """Show a cell of a line, under the finger or in its part of the line."""
+        part, x_mm = Part(line, self.width), self.device.x_mm
+        fits = under and x_mm is not None
+        self._put(part.under(cell, x_mm, self.style.geometry) if fits else part.at(cell))
 
     def follow(self, ticks: NDArray[np.void]) -> None:
         """Look where the hand went, and give what follows once it is done with this."""
-        followed = self.surface.follow(ticks)
+        followed = self.track(ticks)
         if followed is None:
             self._watch.rest()
             return
-        if followed.line is not None:
+        if followed.line:
             self._arrive()
         if followed.reached:
             self.say("", self._end_cue())
-        if followed.done and self.by_hand and not self.scroll_cells_s and not self.finished:
+        missed = not self.attended and self._hand_done(ticks[-1])  # the end, between two ticks
+        if missed and self.device.once:
+            self.done = True
+        elif missed or (
+            followed.done and self.by_hand and not self.scroll_cells_s and not self.finished
+        ):
             self.go_on()
-            return
-        if not self.attended and self._hand_done(ticks[-1]):
-            # It was at the end of the line between two ticks, or its recording is over.
-            if self.device.once:
-                self.done = True
-            else:
-                self.go_on()
-            return
-        if not self.finished:
+        elif not self.finished:
             self._say_of_hand(ticks)
 
     def _hand_done(self, tick: np.void) -> bool:
-        felt = int(tick["line"]) == self.surface.number and not int(tick["flags"]) & HELD
-        return felt and self.device.hand_done()
+        felt = int(tick["line"]) == self.number and not int(tick["flags"]) & HELD
+        return felt and self.device.hand_done
 
     def _say_of_hand(self, ticks: NDArray[np.void]) -> None:
         """Say what keeps the hand from the end of the line, and whether it is too fast."""
-        reached, patient = self.surface.reached, self.device.held
+        reached, patient = self.reached, self.device.held
         for sentence in self._watch.watch(ticks, reached=reached, patient=patient):
             self.say(sentence)
-        if not (self._too_fast_said or reached or patient or self.surface.figured):
+        self.hopeless = self._watch.hopeless
+        if not (self._too_fast_said or reached or patient or self.figured):
             note = too_fast_note(float(ticks["vx_mm_s"].max()), self.style)
             if note is not None:
                 self._too_fast_said = True
                 self.say(note)
 
-    @property
-    def hopeless(self) -> str | None:
-        """Reason why the line will not come to its end without help; None without one."""
-        return self._watch.hopeless
-
     def _end_cue(self) -> Cue:
-        parts = [part for part in self.surface.parts if part is not None]
-        last = not self.surface.rows or self.surface.part is parts[-1]
         following = self.beside(1)
-        page = following is None or following.block.page_number or self.surface.rows
-        return Cue.PAGE_END if last and page else Cue.LINE_END
+        if self.rows:
+            return Cue.PAGE_END if self.line is self.lines[-1] else Cue.LINE_END
+        last = following is None or following.block.page_number
+        return Cue.PAGE_END if last else Cue.LINE_END
 
     def go_on(self) -> None:
         """Give the next part of the line, or what follows; at the end, say so."""
-        if not self.pan(1) and not self.turn_page(1):
-            self.finish()
-
-    def pan(self, step: int) -> bool:
-        """Show the next part of the line, or the one before; False if there is none."""
-        panned = self.surface.pan(step)
-        if panned:
-            self._arrive(another=False)
-        return panned
-
-    def scroll(self, cells_s: float) -> None:
-        """Have lines come by time, at so many cells a second; 0 for by hand."""
-        if not self.scroll_cells_s:
-            self._cells_due = max(len(self.surface.part), 1)
-        self.scroll_cells_s = cells_s
-
-    def turn_page(self, step: int) -> bool:
-        """Show the next page of the surface, or the one before; False if there is none."""
-        if not self.surface.turn(step):
-            return False
-        if self.surface.rows:
-            numbers = [self.layout.number(line) for line in self.surface.lines]
-            lines = f"lines {numbers[0]} to {numbers[-1]}" if numbers[1:] else f"line {numbers[0]}"
-            self.say(f"page: {lines}", Cue.PAGE_END)
-        self._arrive()
-        return True
-
-    def finish(self) -> None:
-        """Come to the end of the text; another reading begins at its beginning."""
+        if self.pan(1) or self.turn_page(1):
+            return
         self.scroll_cells_s = 0.0
         self._unkept = None
-        self.kept.keep(0, 0.0, "")
+        self.kept.keep(0, 0.0, "")  # another reading begins at the beginning
         if self.attended:
             self.finished = True
             self.say("end of the text", Cue.LIMIT)
         else:
             self.done = True
+
+    def pan(self, step: int) -> bool:
+        """Show the next part of the line, or the one before; False if there is none."""
+        panned = self.pan_on(step)
+        if panned:
+            self._arrive(another=False)
+        return panned
+
+    def turn_page(self, step: int) -> bool:
+        """Show the next page of the surface, or the one before; False if there is none."""
+        if not self.turn_over(step):
+            return False
+        if self.rows:
+            first, *others = (self.layout.number(line) for line in self.lines)
+            lines = f"lines {first} to {others[-1]}" if others else f"line {first}"
+            self.say(f"page: {lines}", Cue.PAGE_END)
+        self._arrive()
+        return True
+
+    def scroll(self, cells_s: float) -> None:
+        """Have lines come by time, at so many cells a second; 0 for by hand."""
+        if not self.scroll_cells_s:
+            self._cells_due = max(len(self.part), 1)
+        self.scroll_cells_s = cells_s
 
     def idle(self, now_s: float) -> None:
         """Keep the place, take what is ready, and let time bring the next line."""
@@ -407,7 +365,10 @@ class Reader(Explored):
             self._watched_s = now_s
             self._read_anew()
         if self.figures is not None:
-            self._show_figures(self.figures)
+            self.figures.take(self)
+            due, self._figure_due = self._figure_due, False
+            if due:
+                self.figures.tell(self.line, self.say, below=self.has_free(self.row))
         passed_s, self._ticked_s = now_s - self._ticked_s, now_s
         if self.scroll_cells_s and not (self.device.paused or self.finished):
             self._cells_due -= min(passed_s, 0.25) * self.scroll_cells_s
@@ -415,37 +376,24 @@ class Reader(Explored):
                 self.go_on()
         self.book.source.gather(_GATHERED)
 
-    def _show_figures(self, figures: Any) -> None:
-        """Have figures join the page once they are compiled, and say which one the line has."""
-        figures.take(self.surface)
-        if self._figure_due:
-            self._figure_due = False
-            below = self.surface.row in self.surface.free
-            for sentence in figures.said(self.line, below=below):
-                self.say(sentence)
-
     def keep(self) -> None:
         """Keep the place now."""
         line, self._unkept = self._unkept, None
         if line is not None:
             self.kept.keep(line.place, self.layout.progress(line), around(line))
 
-    def steer(self) -> None:
-        """Have a simulated hand read what is under it."""
-        self.surface.steer()
-
     def come_back(self) -> None:
         """Put the text under the hand again, after a figure was felt in its place."""
         self.inside = None
-        self.surface.show_again()
+        self.show_parts(self.parts, self.row)
         self._arrive(another=False)
         self.say(self.named())
 
     def route(self, cell: int) -> None:
         """Say what is at a cell of the line, and bring it under the finger."""
         if cell < len(self.line):
-            self.remember()
-            self.bring_under(cell)
+            self._remember()
+            self._bring(self.line, cell, under=True)
         self.say(self.cell_said(cell))
 
     def cell_said(self, cell: int | None) -> str:
@@ -453,16 +401,16 @@ class Reader(Explored):
         line = self.line
         if cell is None or not 0 <= cell < len(line):
             return "nothing under the finger"
-        numbers = "-".join(map(str, dots_of(int(line.masks[cell]))))
-        said = [f"dots {numbers}" if numbers else "no dots"]
-        span = line.source(cell)
-        if span is not None:
-            begin = line.block.start
-            printed = line.block.text[span[0] - begin : span[1] - begin].strip()
-            said += [letter_said(printed)] if printed else []
-            word = line.word(cell)
-            said += [f"in {word}"] if word and word != printed else []
-        return ", ".join(said)
+        dots = "-".join(map(str, dots_of(int(line.masks[cell]))))
+        first, after = line.source(cell) or (0, 0)
+        begin, word = line.block.start, line.word(cell)
+        printed = line.block.text[first - begin : after - begin].strip() if after else ""
+        said = (
+            f"dots {dots}" if dots else "no dots",
+            letter_said(printed),
+            f"in {word}" if word not in ("", printed) else "",
+        )
+        return ", ".join(filter(None, said))
 
     # How it feels
 
@@ -476,62 +424,55 @@ class Reader(Explored):
         InputError
             If a value is out of range, or leaves no room for a cell.
         """
-        style = self.style.replace(**changes)
         before = self.style
-        self.use(style)
+        self.use(before.replace(**changes))
         self.undo.append(before)
 
     def use(self, style: BrailleStyle) -> None:
         """Show lines in a style, laid out anew where that changes their length."""
-        before = self.style.geometry.cell_pitch_mm, self.surface.width
-        place, share = self.place, self._share
-        room = cells_per_line(style.geometry, self.device.display)
-        if before == (style.geometry.cell_pitch_mm, min(room, MOST_CELLS)):
-            self.surface.show_in(style)
-            return
-        self.surface.use(style)
-        self._lay_out(self.book, place, share)
+        place, under = self.place, self.cell is not None
+        width = min(cells_per_line(style.geometry, self.display), MOST_CELLS)
+        pitch_mm = style.geometry.cell_pitch_mm
+        if (self.style.geometry.cell_pitch_mm, self.width) == (pitch_mm, width):
+            self.show_in(style)
+        else:
+            self.fit(style)
+            self._lay_out(self.book, place, under=under)
 
     def lay_out(self, book: Book) -> None:
         """Lay the text out by another table; what is under the finger stays there."""
-        self._lay_out(book, self.place, self._share)
+        self._lay_out(book, self.place, under=self.cell is not None)
 
-    def _lay_out(self, book: Book, place: int, share: float | None) -> None:
-        ends = [
-            None if number in (1, None) else self.layout.line(number)
-            for number in (self.first, self.last)
-        ]
-        self.layout = Layout(book, self.layout.width if self._fixed else self.surface.width)
-        first, last = (None if line is None else self.layout.place(line.place) for line in ends)
-        self.first = self.first if first is None else self.layout.number(first[0])
-        self.last = self.last if last is None else self.layout.number(last[0])
-        line, cell = self.layout.place(place) or (self.layout.last(), 0)
+    def _lay_out(self, book: Book, place: int, *, under: bool) -> None:
+        before = self.layout
+        layout = Layout(book, before.width if self._fixed else self.width)
+
+        def renumbered(number: int | None) -> int | None:
+            line = None if number in (1, None) else before.line(number)
+            found = None if line is None else layout.place(line.place)
+            return number if found is None else layout.number(found[0])
+
+        line, cell = layout.place(place) or (layout.last(), 0)
         if line is None:
             raise InputError(f"{book.source.name} has no text")
-        self._put_under(line, cell, share)
-
-    def turn(self, knob: str, value: float) -> str:
-        """Give a knob of the style a value; a sentence on it, or empty if it had it before."""
-        turned = KNOBS[knob]
-        if turned.value(self.style) == turned.nearest(value):
-            return ""
-        self.tune(**{turned.field: turned.nearest(value)})
-        return turned.said(turned.nearest(value))
+        self.layout = layout
+        self.first, self.last = renumbered(self.first) or 1, renumbered(self.last)
+        self._bring(line, cell, under=under)
 
     def _read_anew(self) -> None:
         """Read a file anew that has changed, at the same place."""
         words, place, before = around(self.line), self.line.place, self.book.source
         try:
             book = self._changed()
-            if book is not None:
-                self._lay_out(book, nearest(book.source, words, place), None)
+            if book is None:
+                return
+            self._lay_out(book, nearest(book.source, words, place), under=False)
         except InputError as error:
             self.refuse(f"the file has changed and is not read anew: {error}")
             return
-        if book is not None:
-            self.back = []
-            before.close()
-            self.say(f"the file has changed; it is read anew, {self.named()}")
+        self.back = []
+        before.close()
+        self.say(f"the file has changed; it is read anew, {self.named()}")
 
 
 def letter_said(text: str) -> str:

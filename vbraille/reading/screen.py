@@ -6,23 +6,18 @@ BRLTTY says what is shown, and does what keys ask for; here it comes under the h
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from vbraille.braille.spelling import to_braille
-from vbraille.engine.engine import EndOfLine
-from vbraille.engine.record import Flag
-from vbraille.knobs import KNOBS
-from vbraille.layout import cells_per_line
+from vbraille.braille.cells import Cells
 from vbraille.reading.brltty import Talk
 from vbraille.reading.commands import Where, command
-from vbraille.reading.explored import Explored
-from vbraille.reading.surface import rows_on
-from vbraille.simulation.steering import ReadLine, ReadPage
+from vbraille.reading.surface import Part, Surface
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
@@ -32,15 +27,13 @@ if TYPE_CHECKING:
     from vbraille.reading.outputs import Output
     from vbraille.render import BrailleStyle
 
-_UNFELT: Final = int(Flag.PAUSED | Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD | Flag.TURNED)
 _CALM_S: Final = 0.02  # from one change of what is shown to the next
 _ECHO_S: Final = 0.3  # what stands for so long is printed
-_BELOW_S: Final = 0.5  # a hand that stays below the lines for so long asks for those below
 _SIX: Final = 0x3F  # mask of dots 1 to 6
 _EIGHTH: Final = 3  # dot row of dots 7 and 8
 
 
-class Screen(Explored):
+class Screen(Surface):
     """Screen as BRLTTY shows it, under a hand.
 
     Parameters
@@ -53,6 +46,11 @@ class Screen(Explored):
         How braille is shown.
     keyboard
         Keyboard whose wait ends when BRLTTY says something.
+
+    Attributes
+    ----------
+    talk : Talk
+        What BRLTTY has said.
     """
 
     where = Where.SCREEN
@@ -66,30 +64,21 @@ class Screen(Explored):
         style: BrailleStyle,
         keyboard: Keyboard,
     ) -> None:
-        super().__init__(device, outputs)
-        self.style = style
-        self.rows = rows_on(device.display, style)
-        self.row = 0
+        super().__init__(device, outputs, "usual", style)
         self._port, self._keyboard = port, keyboard
-        cells = cells_per_line(style.geometry, device.display)
-        self._new = lambda: Talk(max(self.rows, 1), cells)
-        self.talk = self._new()
-        self._x_mm = math.nan
-        self._number = 0
         self._shown_s, self._changed_s = -math.inf, math.inf
-        self._below_ns = 0
-        self._echoed = self.talk.text
-        self._masks: NDArray[np.uint8] = self.talk.masks
-        self._tail = EndOfLine(0.0, 0.0), -1.0
-        self.put()
+        self._begin()
+        self._echoed, self._masks = self.talk.text, self.talk.masks
+        self.show_parts(self._parts(), 0)
 
-    # What is under the hand
+    def _begin(self) -> None:
+        self.talk = Talk(max(self.rows, 1), self.width, self.say)
 
     @property
     def text(self) -> str:
         """Print of the line under the hand."""
-        cells = self.talk.masks.shape[1]
-        return self.talk.text[self.row * cells : (self.row + 1) * cells].rstrip()
+        begin = self.row * self.line_masks.size
+        return self.talk.text[begin : begin + self.line_masks.size].rstrip()
 
     @property
     def line_masks(self) -> NDArray[np.uint8]:
@@ -99,80 +88,45 @@ class Screen(Explored):
     @property
     def cell(self) -> int | None:
         """Cell of the line under the finger; None if there is none."""
-        if math.isnan(self._x_mm):
-            return None
-        cell = math.floor(self._x_mm / self.style.geometry.cell_pitch_mm)
+        x_mm = self.device.x_mm
+        cell = -1 if x_mm is None else math.floor(x_mm / self.style.geometry.cell_pitch_mm)
         return cell if 0 <= cell < self.line_masks.size else None
 
-    def echoed(self, echo: str) -> Iterable[str]:
-        """Lines that are printed of the line: its print, its cells, or both."""
-        if echo in ("cells", "both"):
-            yield f"cells: {to_braille(self.line_masks.tolist())}"
-        if echo in ("text", "both"):
-            yield f"text: {self.text}"
-
-    def put(self) -> None:
-        """Put what BRLTTY shows under the hand; cells that stay are felt as before."""
-        style, display, masks = self.style, self.device.display, self.talk.masks
-        if max(*style.mapping.left, *style.mapping.right) < _EIGHTH and (masks > _SIX).any():
+    def _parts(self) -> list[Part]:
+        """Rows as the surface shows them; a blank one ends where its first cell does."""
+        mapping = self.style.mapping
+        if max(*mapping.left, *mapping.right) < _EIGHTH and (self.talk.masks > _SIX).any():
             self.talk.remark("dots 7 and 8 are not shown: the mapping has three rows of dots")
-        if self.rows:
-            program = style.render_page(list(masks), display)
-        else:
-            program = style.render(masks[0], display)
-        self._number += 1
-        self._masks = masks
-        self.device.put(program, self._number)
-        end_mm = self.end_mm
-        if end_mm != self._tail[1]:
-            self._watch_end(end_mm)
+        rows = (masks[: max(np.flatnonzero(masks), default=0) + 1] for masks in self.talk.masks)
+        return [Part(Cells.bare(masks), self.width) for masks in rows]
 
-    @property
-    def end_mm(self) -> float:
-        """Place where the last dot of the longest line ends."""
-        felt = np.flatnonzero((self.talk.masks & _SIX).any(0))
-        return self.style.geometry.extent_mm(int(felt[-1]) + 1 if felt.size else 1)
-
-    def _watch_end(self, end_mm: float) -> None:
-        self._tail = EndOfLine(self.device.display.span_mm, end_mm), end_mm
-        self.steer()
-
-    def steer(self) -> None:
-        """Have a simulated hand read what is shown."""
-        if self.rows:
-            pitch_mm = self.style.geometry.line_pitch_mm
-            self.device.give(ReadPage(self.rows, pitch_mm, self._tail[1], pitch_mm))
-        else:
-            self.device.give(ReadLine(self._tail[1]))
-
-    # What BRLTTY says
+    def tune(self, **changes: Any) -> None:
+        """Show the screen in another style."""
+        self.show_in(self.style.replace(**changes))
 
     def idle(self, now_s: float) -> None:
-        """Meet BRLTTY, and show what it says."""
-        was = self._port.connected
-        if self._port.meet():
-            self.talk = self._new()
-            self._port.send(self.talk.hello)
+        """Meet BRLTTY, and show what it says; cells that stay are felt as before."""
+        port = self._port
+        if port.meet():
+            self._begin()
+            port.send(self.talk.hello)
             self.say("BRLTTY: connected")
-            was = True
-        if now_s - self._shown_s >= _CALM_S:
-            self.talk.feed(self._port.take())
-            if was and not self._port.connected:
-                self.talk = self._new()
+        calm = now_s - self._shown_s >= _CALM_S
+        if calm and port.connected:
+            self.talk.feed(port.take())
+            if not port.connected:
+                self._begin()
                 self.say("BRLTTY: gone; the array rests until it comes back")
             if not np.array_equal(self.talk.masks, self._masks):
-                self._shown_s = now_s
-                self.put()
-        for sentence in self.talk.remarks():
-            self.say(sentence)
+                self._shown_s, calm, self._masks = now_s, False, self.talk.masks
+                self.change(self._parts())
         if self.talk.text != self._echoed:
             self._echoed, self._changed_s = self.talk.text, now_s
         if now_s - self._changed_s >= _ECHO_S:
             self._changed_s = math.inf
             for output in self.outputs:
                 output.show(self)
-        calm = now_s - self._shown_s >= _CALM_S
-        self._keyboard.also = self._port.descriptors if calm else []
+        self._keyboard.also = port.descriptors if calm else []
 
     def send(self, name: str) -> None:
         """Ask BRLTTY for something by the name of its command."""
@@ -181,30 +135,12 @@ class Screen(Explored):
         else:
             self.refuse("BRLTTY is not connected")
 
-    # What the hand does
-
     def follow(self, ticks: NDArray[np.void]) -> None:
-        """Look where the hand went; a hand that comes back from the end goes on to the right."""
-        felt = ticks[ticks["flags"] & _UNFELT == 0]
-        if not felt.size or not self._port.connected:
-            return
-        self._x_mm = float(felt["x_mm"][-1])
-        if self.rows:
-            self._follow_rows(felt)
-        elif self._tail[0].find(felt["x_mm"]) is not None:
-            self.send("FWINRT")
-            self._watch_end(self._tail[1])
-
-    def _follow_rows(self, ticks: NDArray[np.void]) -> None:
-        row = math.floor(float(ticks["y_mm"][-1]) / self.style.geometry.line_pitch_mm)
-        now_ns = int(ticks["time_ns"][-1])
-        if row < self.rows:
-            self.row, self._below_ns = max(row, 0), 0
-            return
-        before, self._below_ns = self._below_ns, self._below_ns or now_ns
-        if before > 0 and now_ns - before >= _BELOW_S * 1e9:
-            self._below_ns = -1  # until the hand is back on the lines
-            self.send("WINDN")
+        """Look where the hand went; one that has read all asks for what follows."""
+        followed = self.track(ticks)
+        if followed is not None and followed.done and self._port.connected:
+            self.send("WINDN" if self.rows else "FWINRT")
+            self.begin(self.row)
             self.steer()
 
     def route(self, cell: int) -> None:
@@ -216,16 +152,24 @@ class Screen(Explored):
         else:
             self.refuse("BRLTTY takes the cursor to every cell but the first")
 
-    def turn(self, knob: str, value: float) -> str:
-        """Give a knob of the style a value; a sentence on it, or empty if it had it before."""
-        turned = KNOBS[knob]
-        changes: dict[str, Any] = {turned.field: value}
-        style = self.style.replace(**changes)
-        if style == self.style:
-            return ""
-        self.style = style
-        self.put()
-        return turned.said(value)
+    @command("take the cursor to the finger", "enter", also="button:4", where=Where.SCREEN,
+             first=True, steers=True, name="route")  # fmt: skip
+    def route_here(self) -> None:
+        """Take the cursor to the finger."""
+        if self.cell is None:
+            self.refuse("the finger is on no cell")
+        else:
+            self.route(self.cell)
+
+    @command("where the line and the cursor are on the screen", "i", where=Where.SCREEN,
+             first=True, name="where")  # fmt: skip
+    def say_where(self) -> None:
+        """Say where the line and the cursor are."""
+        at = {
+            name: self.talk.status.get(name, 0) for name in ("BRLROW", "BRLCOL", "CSRROW", "CSRCOL")
+        }
+        self.say("line: row {BRLROW}, column {BRLCOL}; cursor: row {CSRROW}, column {CSRCOL}"
+                 .format(**at))  # fmt: skip
 
 
 # BRLTTY's commands with their keys; those are of `read`, where they mean the same. Help names the
@@ -253,36 +197,9 @@ _ASKED: Final = {
 _FIRST: Final = 6
 _BUTTONS: Final = {"LNDN": "button:1", "LNUP": "button:2"}
 
-
-def _add_asked() -> None:
-    for place, (name, (words, keys)) in enumerate(_ASKED.items()):
-        also = f"pins:{name} {_BUTTONS.get(name, '')}"
-        told = {"first": place < _FIRST, "steers": place < _FIRST, "name": name.lower()}
-
-        @command(words, keys, also=also, where=Where.SCREEN, **told)
-        def ask(screen: Screen, name: str = name) -> None:
-            screen.send(name)
-
-
-_add_asked()
-
-
-@command("take the cursor to the finger", "enter", also="button:4", where=Where.SCREEN, first=True,
-         steers=True)  # fmt: skip
-def route(screen: Screen) -> None:
-    """Take the cursor to the finger."""
-    if screen.cell is None:
-        screen.refuse("the finger is on no cell")
-    else:
-        screen.route(screen.cell)
-
-
-@command("where the line and the cursor are on the screen", "i", where=Where.SCREEN, first=True)
-def where(screen: Screen) -> None:
-    """Say where the line and the cursor are."""
-    status = screen.talk.status
-    said = (
-        f"{words}: row {status.get(f'{name}ROW', 0)}, column {status.get(f'{name}COL', 0)}"
-        for name, words in (("BRL", "line"), ("CSR", "cursor"))
+for place, (name, (words, keys)) in enumerate(_ASKED.items()):
+    told = place < _FIRST
+    also = f"pins:{name} {_BUTTONS.get(name, '')}"
+    command(words, keys, also=also, where=Where.SCREEN, first=told, steers=told, name=name.lower())(
+        partial(Screen.send, name=name)
     )
-    screen.say("; ".join(said))

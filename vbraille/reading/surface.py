@@ -1,30 +1,31 @@
 """Surface under the hand: part of one line, or a page of lines where the carriage has two axes.
 
-A surface knows from the ticks of the engine which line the finger is on, and whether it is done.
+It knows from the ticks of the engine which line the finger is on, and whether it is done.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from vbraille.engine.engine import EndOfLine
 from vbraille.engine.record import Flag
 from vbraille.layout import cells_per_line
+from vbraille.reading.explored import Explored
 from vbraille.simulation.steering import ReadLine, ReadPage
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
     from vbraille.braille.geometry import Geometry
-    from vbraille.display import Display
-    from vbraille.layout import Line
     from vbraille.reading.device import ReadingDevice
+    from vbraille.reading.figures import BookFigures
+    from vbraille.reading.outputs import Output
     from vbraille.render import BrailleStyle
     from vbraille.render.program import Program
 
@@ -45,20 +46,17 @@ class Part:
 
     Parameters
     ----------
-    line : Line
-        The line.
+    line
+        The line, which has masks and a length.
     width : int
         Largest number of cells that are shown.
     first : int
         Cell of the line that stands first; below 0, that many blank cells stand before the line.
-    start_mm : float
-        Place on the surface at which that cell begins, less than a cell's pitch before 0.
     """
 
-    line: Line
+    line: Any
     width: int
     first: int = 0
-    start_mm: float = 0.0
 
     def __len__(self) -> int:
         return max(0, min(self.width, len(self.line) - self.first))
@@ -66,60 +64,41 @@ class Part:
     @property
     def masks(self) -> NDArray[np.uint8]:
         """Dot masks of what is shown, uint8[cells]."""
-        before = np.zeros(min(max(-self.first, 0), len(self)), np.uint8)
+        before = np.zeros(max(-self.first, 0), np.uint8)
         return np.concatenate((before, self.line.masks[max(self.first, 0) :]))[: len(self)]
 
     def at(self, cell: int) -> Part:
         """Part with a cell, of those into which the line falls from its start."""
         return Part(self.line, self.width, max(cell, 0) // self.width * self.width)
 
-    def last(self) -> Part:
-        """Last part of the line."""
-        return self.at(len(self.line) - 1)
-
     def cell_at(self, x_mm: float, geometry: Geometry) -> int | None:
         """Cell of the line at a place on the surface; None if there is none."""
-        shown = math.floor((x_mm - self.start_mm) / geometry.cell_pitch_mm)
+        shown = math.floor(x_mm / geometry.cell_pitch_mm)
         return self.first + shown if 0 <= shown < len(self) and self.first + shown >= 0 else None
 
-    def under(self, cell: int, x_mm: float, pitch_mm: float, share: float) -> Part:
-        """Part with a cell at a place; a share of the cell, 0 to 1, is to the left of that."""
-        before = x_mm / pitch_mm - share  # cells, and a part of one
-        shown = math.ceil(before - 1e-9)
-        return replace(self, first=cell - shown, start_mm=min((before - shown) * pitch_mm, 0.0))
+    def under(self, cell: int, x_mm: float, geometry: Geometry) -> Part:
+        """Part with a cell at a place."""
+        shown = min(max(math.floor(x_mm / geometry.cell_pitch_mm), 0), self.width - 1)
+        return Part(self.line, self.width, cell - shown)
 
 
 class Followed(NamedTuple):
     """Progress of the hand: it is on another line, came to a line's end, or is done with all."""
 
-    line: Line | None = None
+    line: bool = False
     reached: bool = False
     done: bool = False
 
 
-class Figures(Protocol):
-    """The figures of a book; see `vbraille.reading.figures`."""
-
-    def rows_below(self, line: Line, pitch_mm: float, rows: int, travel_mm: float) -> int:
-        """Number of rows to keep free below a line for its figure; 0 if it has none there."""
-        ...
-
-    def place(self, surface: Surface) -> None:
-        """Begin to compile a page with its figures; the surface shows it when it is ready."""
-        ...
-
-
-class Surface:
-    """Lines that lie under the hand.
+class Surface(Explored):
+    """Lines that lie under the hand; a book, or a screen.
 
     Parameters
     ----------
-    device
-        Device that it is shown on.
+    device, outputs, key_set
+        As of `Explored`.
     style
         How braille is shown.
-    beside
-        Function that gives the line after one, or before it where the step is -1; None at an end.
     figures
         The figures of the book; None if it has none.
     by_hand
@@ -133,8 +112,8 @@ class Surface:
         Row that is read; the finger is on it, or was on it last.
     rows : int
         Number of rows of a page; 0 where one line is shown, wherever along y the array is.
-    free : dict[int, int]
-        Number of rows that are kept free for a figure, by the row of the line above.
+    width : int
+        Number of cells that a line has room for.
     number : int
         Number by which ticks name what is shown, which grows.
     reached : bool
@@ -146,22 +125,26 @@ class Surface:
     def __init__(
         self,
         device: ReadingDevice,
+        outputs: Sequence[Output],
+        key_set: str,
         style: BrailleStyle,
-        beside: Callable[[Line, int], Line | None],
-        figures: Figures | None = None,
         *,
+        figures: BookFigures | None = None,
         by_hand: bool = True,
     ) -> None:
-        self._device, self._beside, self._figures = device, beside, figures
-        self._by_hand = by_hand
-        self.parts: list[Part | None] = []
-        self.free: dict[int, int] = {}
+        super().__init__(device, outputs, key_set)
+        self.figures, self.by_hand = figures, by_hand
+        self.parts: Sequence[Part | None] = []
         self.row = self.number = 0
         self.figured = False
         self.finger_row = -1  # in which the finger is now; -1 if it is above the page
-        self.use(style)
+        self.fit(style)
 
-    def use(self, style: BrailleStyle) -> None:
+    def neighbour(self, line: Any, step: int) -> Any:  # noqa: ARG002 - a screen has no more
+        """Line after one, or before it where the step is -1; None at an end."""
+        return None
+
+    def fit(self, style: BrailleStyle) -> None:
         """Show what comes in a style.
 
         Raises
@@ -169,14 +152,10 @@ class Surface:
         InputError
             If there is no room for a cell.
         """
-        self.width = min(cells_per_line(style.geometry, self._device.display), MOST_CELLS)
-        self.rows = rows_on(self._device.display, style)
+        self.width = min(cells_per_line(style.geometry, self.display), MOST_CELLS)
+        pitches = self.display.height_mm / style.geometry.line_pitch_mm - _below_pitches(style)
+        self.rows = min(max(0, math.floor(pitches + 1e-9)), MOST_LINES)
         self.style = style
-
-    @property
-    def display(self) -> Display:
-        """Display that it is shown on."""
-        return self._device.display
 
     @property
     def part(self) -> Part:
@@ -186,7 +165,7 @@ class Surface:
         return part
 
     @property
-    def lines(self) -> list[Line]:
+    def lines(self) -> list[Any]:
         """Lines that are shown."""
         return [part.line for part in self.parts if part is not None]
 
@@ -199,105 +178,117 @@ class Surface:
     @property
     def end_mm(self) -> float:
         """Place where the last dot of the line ends."""
-        return self.part.start_mm + self.style.geometry.extent_mm(len(self.part))
+        return self.style.geometry.extent_mm(len(self.part))
+
+    def has_free(self, row: int) -> bool:
+        """Tell whether rows are kept free below a row's line, for its figure."""
+        return self.parts[row] is not None and [*self.parts[row + 1 : row + 2]] == [None]
 
     # What is shown
 
     def put(self, part: Part) -> None:
         """Put a part of a line under the hand; on a page into the row of the finger."""
-        if not self.rows:
-            self._show([part], 0, {})
-            return
         row = self.finger_row if 0 <= self.finger_row < self.rows else 0
-        free = self._free(part.line)
-        row = min(row, self.rows - 1 - free)
-        above = self._fitting(part.line, -1, row)
-        below = self._fitting(part.line, 1, self.rows - row - 1 - free)
-        # Where a part was moved under the finger, the other lines begin where they do.
-        first = part.first if part.first >= 0 and part.first % part.width == 0 else 0
-        others = [Part(line, part.width, first, part.start_mm) for line in above[::-1]]
-        others += [part, *(Part(line, part.width, first, part.start_mm) for line in below)]
-        before = row - sum(1 + self._free(line) for line in above)
-        self._stack(others, part.line, before)
+        self._lay(part, min(row, self.rows - 1 - self._free(part.line)))
 
-    def turn(self, step: int) -> bool:
+    def turn_over(self, step: int) -> bool:
         """Show the next page, or the one before; False if there are no lines."""
-        lines = self.lines
-        if not self.rows:
-            line = self._beside(lines[0], step)
-            if line is not None:
-                self.put(Part(line, self.width))
-            return line is not None
-        found = self._fitting(lines[-1 if step > 0 else 0], step, self.rows)
-        if not found:
+        line = self.neighbour(self.lines[-1 if step > 0 else 0], step)
+        if line is None:
             return False
-        if step < 0:
-            found.reverse()
-            if self._beside(found[0], -1) is None:  # the first page is a whole one
-                used = sum(1 + self._free(line) for line in found)
-                found += self._fitting(found[-1], 1, self.rows - used)
-        self._stack([Part(line, self.width) for line in found], None, 0)
+        if step < 0 and self.rows:
+            line = [line, *self._fitting(line, -1, self.rows - 1 - self._free(line))][-1]
+        self._lay(Part(line, self.width), 0)
+        if 0 <= self.finger_row < len(self.parts) and self.parts[self.finger_row] is not None:
+            self._enter(self.finger_row)
         return True
 
-    def pan(self, step: int) -> bool:
+    def _lay(self, part: Part, row: int) -> None:
+        """Show a part of a line, on a page in a row with the lines around it."""
+        if not self.rows:
+            self.show_parts([part], 0)
+            return
+        above = self._fitting(part.line, -1, row)[::-1]
+        below = self._fitting(part.line, 1, self.rows - row - 1 - self._free(part.line))
+        # Where a part was moved under the finger, the other lines begin where they do.
+        first = part.first if part.first >= 0 and part.first % part.width == 0 else 0
+        parts: list[Part | None] = []
+        for line in (*above, part.line, *below):
+            other = Part(line, part.width, first)
+            parts += [part if line is part.line else other, *[None] * self._free(line)]
+        before = row - parts.index(part)
+        self.show_parts([None] * before + parts, row)
+
+    def _free(self, line: Any) -> int:
+        """Number of rows to keep free below a line."""
+        if self.figures is None or not self.rows:
+            return 0
+        pitch_mm, travel_mm = self.style.geometry.line_pitch_mm, self.display.travel_mm
+        return self.figures.rows_below(line, pitch_mm, self.rows, travel_mm)
+
+    def _fitting(self, line: Any, step: int, rows: int) -> list[Any]:
+        """Lines after one, or before it, for which there are rows, with their figures."""
+        found: list[Any] = []
+        while (line := self.neighbour(line, step)) is not None:
+            rows -= 1 + self._free(line)
+            if rows < 0:
+                break
+            found.append(line)
+        return found
+
+    def pan_on(self, step: int) -> bool:
         """Show the next parts of the lines, or those before; False if there are none."""
         here = self.part
         first = max(here.first + step * here.width, 0)
-        longest = max(len(line) for line in self.lines) if self.rows else len(here.line)
-        if (step < 0 and here.first <= 0) or first >= longest:
+        if (step < 0 and here.first <= 0) or first >= max(map(len, self.lines)):
             return False
-        parts = [part and Part(part.line, part.width, first) for part in self.parts]
-        self._show(parts, self.row, self.free)
+        moved = [None if part is None else Part(part.line, part.width, first)
+                 for part in self.parts]  # fmt: skip
+        self.show_parts(moved, self.row)
         return True
 
     def show_in(self, style: BrailleStyle) -> None:
         """Show the same in another style; it fades in under the finger."""
         before = self.style.geometry.line_pitch_mm, self.rows
-        self.use(style)
-        if before != (style.geometry.line_pitch_mm, self.rows) and (before[1] or self.rows):
+        self.fit(style)
+        if self.rows and before != (style.geometry.line_pitch_mm, self.rows):
             self.put(self.part)
         else:
             self._render()
-            if self.free and self._figures is not None:
-                self._figures.place(self)
 
-    def show_again(self) -> None:
-        """Show the same after something else was under the hand."""
-        self._show(self.parts, self.row, self.free)
+    def show_parts(self, parts: Sequence[Part | None], row: int) -> None:
+        """Show parts of lines, one below the other, of which one is read."""
+        self.parts = parts
+        self.number += 1
+        self.begin(row)
+        self._render()
+        self.steer()
+
+    def change(self, parts: Sequence[Part]) -> None:
+        """Show other cells in the same rows; the hand goes on where it is."""
+        before_mm = self.end_mm
+        self.parts = parts
+        self._render()
+        if self.end_mm != before_mm:
+            self._enter(self.row)
+            self.steer()
 
     def show_program(self, program: Program) -> None:
         """Have a page with its figures take the place of the page without them."""
         self.figured = True
-        self._device.put(program, self.number)
+        self.device.put(program, self.number)
 
     def steer(self) -> None:
         """Have a simulated hand read what is shown."""
-        geometry = self.style.geometry
         if not self.rows:
-            self._device.give(ReadLine(self.end_mm))
+            self.device.give(ReadLine(self.end_mm))
             return
-        pitch_mm, lines = geometry.line_pitch_mm, len(self.parts)
-        ends = (p.start_mm + geometry.extent_mm(len(p)) for p in self.parts if p is not None)
+        pitch_mm, lines = self.style.geometry.line_pitch_mm, len(self.parts)
+        longest = max(len(part) for part in self.parts if part is not None)
+        end_mm = self.style.geometry.extent_mm(longest)
         below_mm = self.display.height_mm - lines * pitch_mm
         foot_mm = min(below_mm, (_below_pitches(self.style) + 0.5) * pitch_mm)
-        self._device.give(ReadPage(lines, pitch_mm, max(ends), foot_mm * self._by_hand))
-
-    def _show(self, parts: list[Part | None], row: int, free: dict[int, int]) -> None:
-        self.parts, self.row, self.free = parts, row, free
-        self.number += 1
-        self._near, self._near_ns, self._below_ns = row, 0, 0
-        self._begun = False  # whether the finger was on the page since it came
-        self._enter(row)
-        self._render()
-        self.steer()
-        if free and self._figures is not None:
-            self._figures.place(self)
-
-    def _enter(self, row: int) -> None:
-        """Begin to follow the finger along the line of a row."""
-        self.row = row
-        self.reached = self._left = False
-        self._end = EndOfLine(self.display.span_mm, self.end_mm)
+        self.device.give(ReadPage(lines, pitch_mm, end_mm, foot_mm * self.by_hand))
 
     def _render(self) -> None:
         self.figured = False
@@ -305,58 +296,37 @@ class Surface:
             program = self.style.render_page(self.masks, self.display)
         else:
             program = self.style.render(self.part.masks, self.display)
-        if self.part.start_mm:
-            program = program.with_anchor(self.display.span_mm / 2 + self.part.start_mm)
-        self._device.put(program, self.number)
-
-    def _stack(self, parts: list[Part], line: Line | None, before: int) -> None:
-        """Put parts of lines below one another, with free rows for their figures."""
-        rows: list[Part | None] = [None] * before
-        free: dict[int, int] = {}
-        row = before
-        for part in parts:
-            if part.line is line:
-                row = len(rows)
-            below = self._free(part.line)
-            if below:
-                free[len(rows)] = below
-            rows += [part, *[None] * below]
-        if line is None and 0 <= self.finger_row < len(rows) and rows[self.finger_row]:
-            row = self.finger_row
-        self._show(rows, row, free)
-
-    def _free(self, line: Line) -> int:
-        if self._figures is None:
-            return 0
-        pitch_mm, travel_mm = self.style.geometry.line_pitch_mm, self.display.travel_mm
-        return self._figures.rows_below(line, pitch_mm, self.rows, travel_mm)
-
-    def _fitting(self, line: Line, step: int, rows: int) -> list[Line]:
-        """Lines after one, or before it, for which there are rows, with their figures."""
-        found: list[Line] = []
-        following = self._beside(line, step)
-        while following is not None:
-            rows -= 1 + self._free(following)
-            if rows < 0:
-                break
-            found.append(following)
-            following = self._beside(following, step)
-        return found
+        self.device.put(program, self.number)
+        if self.figures is not None:
+            self.figures.place(self)
 
     # What the hand does
 
-    def follow(self, ticks: NDArray[np.void]) -> Followed | None:
+    def begin(self, row: int) -> None:
+        """Begin to follow a hand that has read nothing of what is shown."""
+        self._near, self._near_ns, self._below_ns = row, 0, 0
+        self._begun = False  # whether the finger was on the page since it came
+        self._enter(row)
+
+    def _enter(self, row: int) -> None:
+        """Begin to follow the finger along the line of a row."""
+        self.row = row
+        self.reached = self._left = False
+        self._end = EndOfLine(self.display.span_mm, self.end_mm)
+
+    def track(self, ticks: NDArray[np.void]) -> Followed | None:
         """Look where the hand went; None if nothing of what is shown was to be felt."""
         felt = ticks[(ticks["line"] == self.number) & (ticks["flags"] & _PAUSED == 0)]
         if self.rows and ticks.size and not math.isnan(ticks["y_mm"][-1]):
             self.finger_row = self._row_of(ticks[-1])
-        if not felt.size:
-            self._below_ns = 0
-            return None
         on = felt[felt["flags"] & _UNFELT == 0]
-        if self.rows:
-            return self._follow_page(on)
-        return Followed(None, *self._follow_line(on["x_mm"]))
+        if not on.size:  # it is paused, or the device was away or at rest by itself
+            self._below_ns = 0
+            return Followed() if felt.size else None
+        reached, done = self._follow_line(on["x_mm"])
+        if not self.rows:
+            return Followed(reached=reached, done=done)
+        return self._follow_page(int(on["time_ns"][-1]), reached=reached)
 
     def _follow_line(self, x_mm: NDArray[np.float64]) -> tuple[bool, bool]:
         """Tell whether the hand has come to the line's end now, and whether it is done with it."""
@@ -369,25 +339,22 @@ class Surface:
         self.reached = self._end.reached
         return self.reached and not was_reached, done
 
-    def _follow_page(self, ticks: NDArray[np.void]) -> Followed:
-        if not ticks.size:  # the device was away, or at rest by itself
-            self._below_ns = 0
-            return Followed()
-        row, now_ns = self.finger_row, int(ticks["time_ns"][-1])
-        reached, _ = self._follow_line(ticks["x_mm"])
+    def _follow_page(self, now_ns: int, *, reached: bool) -> Followed:
+        row = self.finger_row
         if row < len(self.parts):
             self._begun, self._below_ns = self._begun or row >= 0, 0
         elif self._begun:
             self._below_ns = self._below_ns or now_ns
-            return Followed(None, reached, now_ns - self._below_ns >= _BELOW_NS)
-        row = next((r for r, free in self.free.items() if r < row <= r + free), row)
+            return Followed(reached=reached, done=now_ns - self._below_ns >= _BELOW_NS)
+        while 0 < row < len(self.parts) and self.parts[row] is None:
+            row -= 1  # from a figure to its line
         if row != self._near:
             self._near, self._near_ns = row, now_ns
         there = 0 <= row < len(self.parts) and self.parts[row] is not None
         if row == self.row or not there or now_ns - self._near_ns < _ON_NS:
-            return Followed(None, reached)
+            return Followed(reached=reached)
         self._enter(row)
-        return Followed(self.part.line)
+        return Followed(line=True)
 
     def _row_of(self, tick: np.void) -> int:
         """Row that the finger is in; with figures, which have no rows, by its place alone."""
@@ -397,15 +364,6 @@ class Surface:
         if abs(at - self.finger_row - 0.5) <= 0.5 + self.style.straying.band / 2:
             return self.finger_row
         return math.floor(at)
-
-
-def rows_on(display: Display, style: BrailleStyle) -> int:
-    """Number of rows of a page, with room below for a finger that asks for the next one.
-
-    It is 0 on a display of one axis, or with room for less than a line along the other.
-    """
-    pitches = display.height_mm / style.geometry.line_pitch_mm
-    return min(max(0, math.floor(pitches - _below_pitches(style) + 1e-9)), MOST_LINES)
 
 
 def _below_pitches(style: BrailleStyle) -> float:

@@ -16,18 +16,13 @@ from vbraille.adaptive.observer import Grid, Quest, nearer
 from vbraille.errors import InputError
 from vbraille.files import write_file
 from vbraille.knobs import KNOBS
-from vbraille.layout import cells_per_line
-from vbraille.reading.commands import Where, command
+from vbraille.reading.commands import Where, both_ways, command
 from vbraille.reading.explored import Explored
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from vbraille.display import Display
     from vbraille.knobs import Knob
     from vbraille.reading.reader import Reader
     from vbraille.render import BrailleStyle
@@ -35,7 +30,7 @@ if TYPE_CHECKING:
 ORDER = ("texture", "contrast", "dot_width", "dot_spacing", "cell_gap")
 CHOICES_PER_KNOB = 6  # at ten seconds each, the five knobs take five minutes
 _SHARES = {"dot_width": (0.5, 2.0), "dot_spacing": (0.6, 1.8), "cell_gap": (0.6, 1.8)}
-_LEAST_CONTRAST = 0.2
+_LEAST = {"contrast": 0.2}
 # Ours: the model's grid. Values stand so many steps apart; how sure a reader is, as the standard
 # deviation of what is felt, is so many parts of the interval; and one choice in so many is a slip.
 _STEPS, _UNSURE, _SLIPS = 24, tuple(0.03 * (0.4 / 0.03) ** (n / 5) for n in range(6)), 0.03
@@ -65,8 +60,8 @@ class Course:
 
     Parameters
     ----------
-    style, display
-        Style that the course begins with, and the display that it is felt on.
+    style
+        Style that the course begins with.
     choices
         The choices.
 
@@ -84,27 +79,29 @@ class Course:
 
     total = len(ORDER) * CHOICES_PER_KNOB
 
-    def __init__(self, style: BrailleStyle, display: Display, choices: list[int]) -> None:
+    def __init__(self, style: BrailleStyle, choices: list[int]) -> None:
         self.choices, self.style = choices, style
         self.found: list[str] = []
         self.knob: Knob | None = None
         self.pair = (0.0, 0.0)
-        for number, name in enumerate(ORDER):
-            knob = KNOBS[name]
-            low, high = _interval(knob, style, self.style, display)
-            made = choices[number * CHOICES_PER_KNOB :][:CHOICES_PER_KNOB]
+        for number, knob in enumerate(KNOBS[name] for name in ORDER):
+            low, high = _LEAST.get(knob.name, 0.0), 1.0
+            if knob.unit:
+                low, high = (knob.value(style) * share for share in _SHARES[knob.name])
             asked: Asked = ()
-            for at, which in enumerate(made):
-                asked = (*asked, (_next(asked), (which == 1) == _lower_first(at)))
-            if len(made) < CHOICES_PER_KNOB:
+            for which in choices[number * CHOICES_PER_KNOB :][:CHOICES_PER_KNOB]:
+                asked = (*asked, (_next(asked), (which == 1) == _lower_first(asked)))
+            if len(asked) < CHOICES_PER_KNOB:
                 self.knob = knob
-                pair = [knob.nearest(round(low + s * (high - low), 2)) for s in _next(asked)]
-                self.pair = (pair[0], pair[1]) if _lower_first(len(made)) else (pair[1], pair[0])
+                ends = [knob.nearest(round(low + s * (high - low), 2)) for s in _next(asked)]
+                first, second = ends if _lower_first(asked) else ends[::-1]
+                self.pair = first, second
                 return
-            value, interval = _liked(asked, low, high)
-            self.style = _with(self.style, knob, knob.nearest(value))
-            ends = f"{interval[0]:g} to {interval[1]:g} {knob.unit}".rstrip()
-            self.found.append(f"{knob.said(knob.nearest(value))}, 95 % interval {ends}")
+            liked, least, most = (round(low + s * (high - low), 2) for s in _liked(asked))
+            value = knob.nearest(liked)
+            self.style = _with(self.style, knob, value)
+            ends = f"{least:g} to {most:g} {knob.unit}".rstrip()
+            self.found.append(f"{knob.said(value)}, 95 % interval {ends}")
 
     def shown(self, which: int) -> BrailleStyle:
         """Style of the one or the other of the next choice, 1 or 2."""
@@ -118,45 +115,20 @@ def _with(style: BrailleStyle, knob: Knob, value: Any) -> BrailleStyle:
     return style.replace(**{knob.field: value})
 
 
-def _lower_first(number: int) -> bool:
+def _lower_first(asked: Asked) -> bool:
     """Tell whether the lower value is the first of a choice: every other time, against learning."""
-    return number % 2 == 0
+    return len(asked) % 2 == 0
 
 
-def _liked(asked: Asked, low: float, high: float) -> tuple[float, tuple[float, float]]:
-    """Value that is liked best and its interval; an end that every choice led to is it."""
+def _liked(asked: Asked) -> tuple[float, float, float]:
+    """Share that is liked best and its interval; an end that every choice led to is it."""
     estimate = _quest().estimate(_LIKED, asked)
-    mean, least, most = (
-        round(low + share * (high - low), 2)
-        for share in (estimate.mean, estimate.low, estimate.high)
-    )
-    chosen = {lower for _, lower in asked}
-    if chosen == {1}:
-        return low, (low, most)
-    if chosen == {0}:
-        return high, (least, high)
-    return mean, (least, most)
-
-
-def _interval(
-    knob: Knob, start: BrailleStyle, now: BrailleStyle, display: Display
-) -> tuple[float, float]:
-    """Least and largest value that is tried, as far as there is room for a cell."""
-    low, high = _SHARES.get(knob.name, (_LEAST_CONTRAST if knob.name == "contrast" else 0.0, 1.0))
-    if knob.name in _SHARES:
-        low, high = (knob.nearest(knob.value(start) * share) for share in (low, high))
-    here = knob.value(now)
-    ways = ([round(end + (here - end) * n / 20, 2) for n in range(20)] for end in (low, high))
-    ends = [next((v for v in way if _fits(knob, now, display, v)), here) for way in ways]
-    return ends[0], ends[1]
-
-
-def _fits(knob: Knob, style: BrailleStyle, display: Display, value: float) -> bool:
-    try:
-        cells_per_line(_with(style, knob, value).geometry, display)
-    except InputError:
-        return False
-    return True
+    lower = [lower for _, lower in asked]
+    if all(lower):
+        return 0.0, 0.0, estimate.high
+    if not any(lower):
+        return 1.0, estimate.low, 1.0
+    return estimate.mean, estimate.low, estimate.high
 
 
 class Tuning(Explored):
@@ -185,9 +157,10 @@ class Tuning(Explored):
     def __init__(self, reader: Reader, path: Path, profile: str, *, again: bool) -> None:
         super().__init__(reader.device, reader.outputs)
         self.reader, self._path, self._profile = reader, path, profile
-        self._start, self.which = reader.style, 1
-        choices = [] if again else self._kept()
-        self.course = Course(self._start, self.device.display, choices)
+        self._start, self._which = reader.style, 1
+        self.course = Course(self._start, [] if again else self._kept())
+        # What the loop asks of a reader:
+        self.follow, self.steer = reader.follow, reader.steer
 
     def _kept(self) -> list[int]:
         if not self._path.exists():
@@ -207,87 +180,69 @@ class Tuning(Explored):
         self.say(f"profile: {self._profile}")
         if self.course.choices:
             self.say(f"going on: {len(self.course.choices)} choices made")
-        self.ask_choice()
+        self._ask()
 
-    def ask_choice(self) -> None:
+    def _ask(self) -> None:
         """Ask for the next choice."""
-        knob = self.course.knob
-        if knob is None:
+        if self.course.knob is None:
             self.done = True
             return
-        self.which = 1
-        self.say(f"choice {len(self.course.choices) + 1} of {Course.total}: {knob.label}")
-        self.feel()
+        label = self.course.knob.label
+        self.say(f"choice {len(self.course.choices) + 1} of {Course.total}: {label}")
+        self._feel(1)
 
-    def feel(self) -> None:
+    def _feel(self, which: int) -> None:
         """Show the one or the other of the two."""
-        self.reader.use(self.course.shown(self.which))
-        self.say(f"this is {self.which}; space feels the other, 1 or 2 chooses")
+        self._which = which
+        self.reader.use(self.course.shown(which))
+        self.say(f"this is {which}; space feels the other, 1 or 2 chooses")
 
-    def choose(self, choices: list[int]) -> None:
+    def _choose(self, choices: list[int]) -> None:
         """Take a choice, or take one back, and ask the next."""
         settled = len(self.course.found)
         self._path.parent.mkdir(parents=True, exist_ok=True)
         kept = json.dumps({"profile": self._profile, "choices": choices}).encode()
         write_file(self._path, kept, replace=True, durable=True)
-        self.course = Course(self._start, self.device.display, choices)
+        self.course = Course(self._start, choices)
         for sentence in self.course.found[settled:]:
             self.say(sentence)
-        self.ask_choice()
+        self._ask()
 
     def forget(self) -> None:
         """Delete the choices, once their outcome is saved."""
         self._path.unlink(missing_ok=True)
 
-    def follow(self, ticks: NDArray[np.void]) -> None:
-        """Read on."""
-        self.reader.follow(ticks)
+    @_command("feel the other one", "space", also="button:3", first=True)
+    def other(self) -> None:
+        """Feel the other one."""
+        self._feel(3 - self._which)
 
-    def steer(self) -> None:
-        """Have a simulated hand read what is under it."""
-        self.reader.steer()
+    @_command("choose the first", "1", also="button:1", first=True)
+    def first(self) -> None:
+        """Choose the first."""
+        self._choose([*self.course.choices, 1])
 
+    @_command("choose the second", "2", also="button:2", first=True)
+    def second(self) -> None:
+        """Choose the second."""
+        self._choose([*self.course.choices, 2])
 
-@_command("feel the other one", "space", also="button:3", first=True)
-def other(tuning: Tuning) -> None:
-    tuning.which = 3 - tuning.which
-    tuning.feel()
+    @_command("take the last choice back", "u", first=True)
+    def undo(self) -> None:
+        """Take the last choice back."""
+        if self.course.choices:
+            self._choose(self.course.choices[:-1])
+        else:
+            self.refuse("nothing to undo")
 
-
-@_command("choose the first", "1", also="button:1", first=True)
-def first(tuning: Tuning) -> None:
-    tuning.choose([*tuning.course.choices, 1])
-
-
-@_command("choose the second", "2", also="button:2", first=True)
-def second(tuning: Tuning) -> None:
-    tuning.choose([*tuning.course.choices, 2])
-
-
-@_command("take the last choice back", "u", first=True)
-def undo(tuning: Tuning) -> None:
-    if tuning.course.choices:
-        tuning.choose(tuning.course.choices[:-1])
-    else:
-        tuning.refuse("nothing to undo")
-
-
-@_command("next line", "n down", first=True)
-def next_line(tuning: Tuning) -> None:
-    _step(tuning, 1)
-
-
-@_command("previous line", "p up", first=True)
-def previous_line(tuning: Tuning) -> None:
-    _step(tuning, -1)
-
-
-def _step(tuning: Tuning, step: int) -> None:
-    line = tuning.reader.beside(step)
-    if line is None:
-        tuning.refuse("no next line" if step > 0 else "no previous line")
-    else:
-        tuning.reader.show(line)
+    @both_ways("line", "n down p up", first=True, where=Where.TUNING)
+    def line(self, step: int) -> None:
+        """Read the next line, or the one before."""
+        line = self.reader.beside(step)
+        if line is None:
+            self.refuse("no next line" if step > 0 else "no previous line")
+        else:
+            self.reader.show(line)
 
 
 _TEXTS = {

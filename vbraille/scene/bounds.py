@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 import math
+from functools import reduce
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from vbraille.scene.patterns import (
-    AnyPattern,
-    Circle,
-    Dots,
-    Group,
-    Image,
-    ImageDots,
-    Label,
-    PathShape,
-    Polygon,
-    StraightLine,
-    Use,
-)
+from vbraille.scene.patterns import Circle, Dots, Group, Image, ImageDots, Label, Shape, Use
+from vbraille.scene.traversal import points_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from vbraille.scene.measures import Point
     from vbraille.scene.pattern import Pattern
+    from vbraille.scene.patterns import AnyPattern
 
 
 class Box(NamedTuple):
@@ -98,32 +89,24 @@ def bounds(pattern: AnyPattern, known: Mapping[Image | Label, Box] = _NOWHERE_KN
     TypeError
         If the pattern is a `Use` or has dots of an image, which only a resolved scene can place.
     """
-    return None if is_everywhere(pattern) else unchanged_bounds(pattern, known)
-
-
-def unchanged_bounds(
-    pattern: AnyPattern, known: Mapping[Image | Label, Box] = _NOWHERE_KNOWN
-) -> Box | None:
-    """Compute what `bounds` would, were the pattern itself not inverted and did it not vibrate."""
-    match pattern:
-        case Image() | Label():
-            return known.get(pattern)
-        case StraightLine():
-            return around((pattern.start_mm, pattern.end_mm)).grown(reach_mm(pattern))
-        case Circle():
-            return around((pattern.center_mm,)).grown(pattern.radius_mm + reach_mm(pattern))
-        case Polygon():
-            return around(pattern.vertices_mm).grown(reach_mm(pattern))
-        case PathShape():
-            points = (point for contour in pattern.contours_mm for point in contour)
-            return around(points).grown(reach_mm(pattern))
-        case Dots():
-            return around(pattern.centers_mm).grown(pattern.dot.radius_mm)
-        case Group():
-            return _of_group(pattern, known)
-        case Use() | ImageDots():
-            raise TypeError(f"a {type(pattern).__name__} has no place before the scene is resolved")
-    return None
+    if isinstance(pattern, Use | ImageDots):
+        raise TypeError(f"a {type(pattern).__name__} has no place before the scene is resolved")
+    if is_everywhere(pattern):
+        return None
+    if isinstance(pattern, Image | Label):
+        return known.get(pattern)
+    if isinstance(pattern, Dots):
+        return around(pattern.centers_mm).grown(pattern.dot.radius_mm)
+    if isinstance(pattern, Shape):
+        radius_mm = pattern.radius_mm if isinstance(pattern, Circle) else 0.0
+        return around(points_of(pattern)).grown(radius_mm + reach_mm(pattern))
+    if not isinstance(pattern, Group):
+        return None
+    boxes = [bounds(part, known) for part in pattern.parts]
+    limited = [box for box in boxes if box is not None]
+    if pattern.operation == "multiply" and limited:
+        return reduce(Box.common, limited)
+    return reduce(Box.joined, limited) if len(limited) == len(boxes) else None
 
 
 def is_everywhere(pattern: Pattern) -> bool:
@@ -135,19 +118,16 @@ def is_everywhere(pattern: Pattern) -> bool:
     return pattern.inverted or low
 
 
-def drawn_radius_mm(shape: StraightLine | Circle | Polygon | PathShape) -> float:
+def drawn_radius_mm(shape: Shape) -> float:
     """Tell how far a shape's stroke or its dots reach from its path, to one side."""
-    if shape.stroke is not None:
-        return shape.stroke.width_mm / 2
-    return 0.0 if shape.dots is None else shape.dots.dot.radius_mm
+    return shape.width_mm / 2
 
 
-def reach_mm(shape: StraightLine | Circle | Polygon | PathShape) -> float:
+def reach_mm(shape: Shape) -> float:
     """Tell how far anything of what a shape is drawn with reaches from its path."""
-    drawn_mm = drawn_radius_mm(shape)
     # Dots that move go on in the path's direction beyond its ends, as far as they reach.
     beyond = math.sqrt(2.0) if shape.dots is not None and shape.dots.velocity_mm_s else 1.0
-    return max(beyond * drawn_mm, shape.cue_width_mm / 2)
+    return max(beyond * drawn_radius_mm(shape), shape.cue_width_mm / 2)
 
 
 def around(points_mm: Iterable[Point]) -> Box:
@@ -157,19 +137,3 @@ def around(points_mm: Iterable[Point]) -> Box:
         return EMPTY
     xs, ys = zip(*points, strict=True)
     return Box(min(xs), min(ys), max(xs), max(ys))
-
-
-def _of_group(group: Group, known: Mapping[Image | Label, Box]) -> Box | None:
-    boxes = [bounds(part, known) for part in group.parts]
-    if group.operation == "multiply":
-        box = None
-        for part in boxes:
-            if part is not None:
-                box = part if box is None else box.common(part)
-        return box
-    box = EMPTY
-    for part in boxes:
-        if part is None:
-            return None
-        box = box.joined(part)
-    return box

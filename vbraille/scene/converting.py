@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import textwrap
@@ -9,17 +10,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import msgspec
-from msgspec import structs
-from msgspec.structs import replace
+from msgspec.structs import fields, replace
 
 from vbraille.errors import InputError
-from vbraille.scene.pattern import Pattern
-from vbraille.scene.patterns import Group, Image, ImageDots
-from vbraille.scene.reading import form_of
-from vbraille.scene.traversal import with_children
+from vbraille.scene.reading import form_of, read_foreign, with_files
+from vbraille.scene.traversal import mapped
 from vbraille.toml import Table
 
 if TYPE_CHECKING:
@@ -28,17 +25,16 @@ if TYPE_CHECKING:
     from vbraille.scene.scene import Scene
     from vbraille.scene.traversal import Steps
 
+    Comments = Mapping[Steps, tuple[str, ...]]
 
 LONGEST = 72  # columns of a line, where that can be
-# Keys that come first: what a table is, and what people call it.
-_FIRST = ("id", "title", "description")
-# Keys that all patterns have, which change what the others describe.
-_LAST = ("amplitude", "inverted", "vibration", "factor")
-_ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
+_LINE = re.compile(r"line (\d+)")
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_fields = cache(fields)
 
 
-def write_scene(scene: Scene, comments: Mapping[Steps, tuple[str, ...]] | None = None) -> str:
-    """Text of a scene's file.
+def write_scene(scene: Scene, comments: Comments | None = None) -> str:
+    """Text of a scene's file; tomlkit would take a second for each 30,000 numbers of a drawing.
 
     Parameters
     ----------
@@ -49,144 +45,73 @@ def write_scene(scene: Scene, comments: Mapping[Steps, tuple[str, ...]] | None =
         first element, ``("elements", 0, "parts", 2)`` for a part of it, and none for the whole
         file.
     """
-    said = comments or {}
-    top = _commented(said.get((), ()))
-    lines = [*top, *([""] if top else []), *_lines(scene, (), "", said)]
-    return "\n".join(lines).lstrip("\n") + "\n"
+    return "\n".join(_lines("", _plain(scene), (), "", comments or {})).strip("\n") + "\n"
+
+
+def _plain(value: Any) -> Any:
+    """Make dictionaries and lists of a value, without what is as usual."""
+    if isinstance(value, Table):
+        kind = type(value).__struct_config__
+        plain = {kind.tag_field: kind.tag} if kind.tag_field else {}
+        for field in _fields(type(value)):
+            own = getattr(value, field.name)
+            if own not in (field.default, {}):
+                plain[field.encode_name] = _plain(own)
+        return plain
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        return int(value)
+    return value
 
 
 def _lines(
-    table: Table, steps: Steps, name: str, comments: Mapping[Steps, tuple[str, ...]]
+    header: str, table: dict[str, Any], steps: Steps, name: str, comments: Comments
 ) -> list[str]:
-    """Lines of a table, without its header, and of the tables in it."""
-    kind = type(table).__struct_config__
-    lines = [f"{kind.tag_field} = {_text(str(kind.tag))}"] if kind.tag_field else []
+    """Lines of a table with its header, after an empty one, and of the tables in it."""
+    lines: list[str] = []
     below: list[str] = []
-
-    def add(header: str, inner: Table, there: Steps, whole: str) -> None:
-        below.extend(["", *_commented(comments.get(there, ())), header])
-        below.extend(_lines(inner, there, whole, comments))
-
-    for key, value in _said(table):
-        whole = f"{name}.{key}" if name else key
-        if isinstance(value, Table):
-            inline = _inline(key, value) if steps and (*steps, key) not in comments else None
-            if inline is not None:
-                lines.append(inline)
-            else:
-                add(f"[{whole}]", value, (*steps, key), whole)
-        elif isinstance(value, Mapping):
-            for item, inner in value.items():
-                inside = f"{whole}.{_key(item)}"
-                add(f"[{inside}]", inner, (*steps, key, item), inside)
-        elif isinstance(value, tuple) and any(isinstance(item, Table) for item in value):
+    for key, value in table.items():
+        there, line = (*steps, key), f"{key} = {_text(value)}"
+        whole = name + (key if _BARE_KEY.fullmatch(key) else _text(key))
+        is_small = steps[1:] and there not in comments and len(line) <= LONGEST
+        if _is_tables(value):
             for number, item in enumerate(value):
-                add(f"[[{whole}]]", item, (*steps, key, number), whole)
+                below += _lines(f"[[{whole}]]", item, (*there, number), f"{whole}.", comments)
+        elif not isinstance(value, dict):
+            lines += _laid(f"{key} = ", value)
+        elif is_small and not any(
+            isinstance(one, dict) or _is_tables(one) for one in value.values()
+        ):
+            lines.append(line)
         else:
-            lines += _valued(key, value)
-    return lines + below
+            below += _lines(f"[{whole}]", value, there, f"{whole}.", comments)
+    about = [f"# {line}".rstrip() for line in comments.get(steps, ())]
+    is_said = lines or not below or header.startswith("[[") or about
+    return [*(["", *about, header] if is_said else []), *lines, *below]
 
 
-def _said(table: Table) -> list[tuple[str, object]]:
-    """Keys and values of a table that are not as usual, in the order in which they stand."""
-    said: dict[str, object] = {}
-    for name, key, usual in _fields(type(table)):
-        value = getattr(table, name)
-        if value == usual and not (isinstance(table, Group) and name == "operation"):
-            continue
-        said[key] = value
-    first = [key for key in _FIRST if key in said]
-    last = [key for key in _LAST if key in said and isinstance(table, Pattern)]
-    middle = [key for key in said if key not in (*first, *last)]
-    middle.sort(key=lambda key: _depth(said[key]))
-    return [(key, said[key]) for key in (*first, *middle, *last)]
+def _is_tables(value: object) -> bool:
+    return isinstance(value, list) and bool(value) and isinstance(value[0], dict)
 
 
-@cache
-def _fields(kind: type[Table]) -> list[tuple[str, str, object]]:
-    """Names of a table's fields, their keys and what they are as usual."""
-    return [
-        (
-            field.name,
-            field.encode_name,
-            field.default
-            if field.default_factory is msgspec.NODEFAULT
-            else field.default_factory(),
-        )
-        for field in structs.fields(kind)
-    ]
-
-
-def _depth(value: object) -> int:
-    """Tell how far down a value stands in its table: what a thing is, its looks, what is in it."""
-    if isinstance(value, Table):
-        return 1
-    if isinstance(value, Mapping):
-        return 2
-    return 3 if isinstance(value, tuple) and any(isinstance(v, Table) for v in value) else 0
-
-
-def _valued(key: str, value: object) -> list[str]:
-    """Lines of a key whose value is no table: one, or one for each item if it is too long."""
-    return _laid(f"{key} = ", value, "")
-
-
-def _laid(before: str, value: object, after: str, indent: str = "") -> list[str]:
-    line = f"{indent}{before}{_value(value)}{after}"
-    if len(line) <= LONGEST or not isinstance(value, tuple):
+def _laid(before: str, value: object, after: str = "", indent: str = "") -> list[str]:
+    """Lines of a value that is no table: one, or one for each item if it is too long."""
+    line = f"{indent}{before}{_text(value)}{after}"
+    if len(line) <= LONGEST or not isinstance(value, list):
         return [line]
     items = [line for item in value for line in _laid("", item, ",", f"{indent}  ")]
     return [f"{indent}{before}[", *items, f"{indent}]{after}"]
 
 
-def _inline(key: str, table: Table) -> str | None:
-    """Line of a key whose value is a small table; None if that stands better by itself."""
-    said = _said(table)
-    if any(_depth(value) for _, value in said):
-        return None
-    kind = type(table).__struct_config__
-    parts = [f"{kind.tag_field} = {_text(str(kind.tag))}"] if kind.tag_field else []
-    parts += [f"{name} = {_value(value)}" for name, value in said]
-    line = f"{key} = {{ {', '.join(parts)} }}" if parts else f"{key} = {{}}"
-    return line if len(line) <= LONGEST else None
-
-
-def _commented(lines: tuple[str, ...]) -> list[str]:
-    return [f"# {line}".rstrip() for line in lines]
-
-
-def _value(value: object) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return _text(value)
-    if isinstance(value, tuple):
-        return f"[{', '.join(map(_value, value))}]"
-    assert isinstance(value, int | float)
-    return _number(value)
-
-
-def _number(value: float) -> str:
-    """A number as plainly as it can be, with all that it is."""
-    whole = int(value)
-    return str(whole) if whole == value and abs(whole) < 10**15 else repr(value)
-
-
-def _text(value: str) -> str:
-    return '"' + "".join(_ESCAPES.get(c) or _character(c) for c in value) + '"'
-
-
-def _character(character: str) -> str:
-    code = ord(character)
-    return character if code >= 0x20 and code != 0x7F else f"\\u{code:04x}"
-
-
-def _key(name: str) -> str:
-    plain = name and all(c.isascii() and (c.isalnum() or c in "-_") for c in name)
-    return name if plain else _text(name)
-
-
-_LINE = re.compile(r"line (\d+)")
+def _text(value: object) -> str:
+    """Text of a value on one line, which but for tables is as in JSON."""
+    if isinstance(value, dict):
+        items = ", ".join(f"{key} = {_text(item)}" for key, item in value.items())
+        return f"{{ {items} }}" if items else "{}"
+    return json.dumps(value, ensure_ascii=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,7 +158,7 @@ def convert_scene(path: Path, folder: Path, *, as_shown: bool = False) -> Conver
         raise InputError(f"{path} is a scene file, or none at all; give a .gen, .tx or .svg file")
     if as_shown and form != "gen":
         raise InputError(f"{path} is not OpenLatero's; leave --as-shown out")
-    found = _read(path, form, as_shown)
+    found = read_foreign(path, form, as_shown=as_shown)
     scene = seen_from(found.scene, path.parent, folder)
     return ConvertedScene(
         write_scene(scene, _comments(path, found)), len(scene.elements), found.warnings
@@ -254,17 +179,15 @@ def seen_from(scene: Scene, old: Path, new: Path) -> Scene:
     if start == there:
         return scene
 
-    def moved(_: Steps, pattern: AnyPattern) -> AnyPattern:
-        if pattern.sound:
-            pattern = replace(pattern, sound=_relative(start / pattern.sound, there))
-        if isinstance(pattern, Image | ImageDots):
-            pattern = replace(pattern, file=_relative(start / pattern.file, there))
-        return with_children(pattern, moved)
+    def seen(pattern: AnyPattern) -> AnyPattern:
+        return mapped(
+            pattern, lambda one: with_files(one, lambda name: _relative(start / name, there))
+        )
 
     return replace(
         scene,
-        elements=tuple(moved((), element) for element in scene.elements),
-        textures={name: moved((), texture) for name, texture in scene.textures.items()},
+        elements=tuple(map(seen, scene.elements)),
+        textures={name: seen(texture) for name, texture in scene.textures.items()},
     )
 
 
@@ -274,16 +197,6 @@ def _relative(file: Path, folder: Path) -> str:
         return Path(os.path.relpath(file, folder)).as_posix()
     except ValueError:  # another drive
         return file.as_posix()
-
-
-def _read(path: Path, form: str, as_shown: bool) -> FoundScene:
-    if form == "svg":
-        from vbraille.scene.svg.drawing import read_svg  # loads the library for SVG
-
-        return read_svg(path)
-    from vbraille.scene.openlatero import read_gen  # loads the library for XML
-
-    return read_gen(path, as_shown=as_shown)
 
 
 def _comments(path: Path, found: FoundScene) -> dict[Steps, tuple[str, ...]]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 from vbraille.errors import InputError
+from vbraille.toml import TomlFile
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
     from pathlib import Path
 
     from vbraille.scene.scene import Scene
@@ -37,41 +37,11 @@ class FoundScene:
     warnings: tuple[str, ...] = ()
 
 
-class LocatedFile:
-    """A file that elements of a scene come from.
+class ForeignFile(NamedTuple):
+    """The name of a file of another format, and the lines of what was found in it."""
 
-    Parameters
-    ----------
-    name
-        Name of the file.
-    lines
-        Function that gives the lines of places in the scene that the file holds, for which it may
-        have to be read once more.
-    refuse
-        Function that refuses the file for a problem at a place in it, in the words of its format;
-        None for formats without their own.
-    """
-
-    def __init__(
-        self,
-        name: str,
-        lines: Callable[[], Mapping[Steps, int]],
-        refuse: Callable[[Steps, str], NoReturn] | None = None,
-    ) -> None:
-        self._name = name
-        self._find_lines = lines
-        self._refuse = refuse
-
-    @cached_property
-    def _lines(self) -> Mapping[Steps, int]:
-        return self._find_lines()
-
-    def place(self, steps: Steps) -> str:
-        """Name of the file, and the line of the nearest thing around a place that has one."""
-        for depth in range(len(steps), 0, -1):
-            if steps[:depth] in self._lines:
-                return f"{self._name} line {self._lines[steps[:depth]]}"
-        return self._name
+    where: str
+    lines: Mapping[Steps, int]
 
     def fail(self, steps: Steps, problem: str) -> NoReturn:
         """Refuse the file for a problem at a place in the scene that it holds.
@@ -81,9 +51,18 @@ class LocatedFile:
         InputError
             In any case.
         """
-        if self._refuse is not None:
-            self._refuse(steps, problem)
-        raise InputError(f"{self.place(steps)}: {about(steps, problem)}")
+        raise InputError(f"{_place(self, steps)}: {about(steps, problem)}")
+
+
+SceneSource = ForeignFile | TomlFile
+
+
+def _place(file: SceneSource, steps: Steps) -> str:
+    """Name of a file, and the line of the nearest thing around a place that has one."""
+    for depth in range(len(steps), 0, -1):
+        if steps[:depth] in file.lines:
+            return f"{file.where} line {file.lines[steps[:depth]]}"
+    return file.where
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,9 +75,9 @@ class Locations:
         Files, and places in them, by places of the scene.
     """
 
-    places: dict[Steps, tuple[LocatedFile, Steps]] = field(default_factory=dict)
+    places: dict[Steps, tuple[SceneSource, Steps]] = field(default_factory=dict)
 
-    def of(self, steps: Steps) -> tuple[LocatedFile, Steps] | None:
+    def of(self, steps: Steps) -> tuple[SceneSource, Steps] | None:
         """File that a place of the scene comes from, and the place in that file."""
         for depth in range(len(steps), 0, -1):
             if steps[:depth] in self.places:
@@ -109,7 +88,7 @@ class Locations:
     def place(self, steps: Steps) -> str:
         """File and line of a place of the scene, or words for it if it comes from no file."""
         found = self.of(steps)
-        return said(steps) if found is None else found[0].place(found[1])
+        return said(steps) if found is None else _place(*found)
 
     def fail(self, steps: Steps, problem: str) -> NoReturn:
         """Refuse the scene for a problem at a place in it, with the file and the line.
@@ -161,10 +140,7 @@ class OpenedScene:
 
     def place(self, number: int) -> str:
         """File and line of an element by its number from 0, such as "house.scene line 12"."""
-        steps: Steps = ("elements", number)
-        first: Steps = (*steps, "parts", 0)  # of a group of what another file has
-        made_here = self.locations.of(steps) is None and self.locations.of(first) is not None
-        return self.locations.place(first if made_here else steps)
+        return self.locations.place(("elements", number))
 
 
 def said(steps: Steps) -> str:

@@ -1,14 +1,27 @@
-"""Numbers that a picture may have, and the checks of them that all its parts share."""
+"""Numbers that a picture may have, the checks of them, and what its parts share."""
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from functools import cache
+from typing import Annotated, Any, NamedTuple, get_args, get_origin, get_type_hints
+
+import msgspec
 
 from vbraille.errors import check_range
+from vbraille.toml import Table, words_of
 
-# A place on the canvas, x and y in mm: x grows to the right, y down towards the reader.
-Point = tuple[float, float]
+_Check = Callable[[str, Any], None]
+
+
+def limits(low: float, high: float, unit: str = "") -> msgspec.Meta:
+    """Limits of the numbers of a field, which `Measured` checks and editors are told."""
+    return msgspec.Meta(
+        extra={"limits": (low, high, unit)},
+        extra_json_schema={"minimum": low, "maximum": high},
+    )
+
 
 # No table is larger, and floating point is still good to a nanometre there.
 MOST_MM = 10_000.0
@@ -17,7 +30,63 @@ LEAST_MM = 0.05
 # Two points of a path that are nearer are one: there is no direction between them.
 LEAST_APART_MM = 1e-6
 LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ = 0.1, 50.0
-LEAST_ZOOM, MOST_ZOOM = 0.5, 16.0
+
+Length = Annotated[float, limits(LEAST_MM, MOST_MM, " mm")]
+Distance = Annotated[float, limits(0.0, MOST_MM, " mm")]
+Size = Annotated[float, limits(0.1, MOST_MM, " mm")]
+Coordinate = Annotated[float, limits(-MOST_MM, MOST_MM, " mm")]
+# A place on the canvas, x and y in mm: x grows to the right, y down towards the reader.
+Point = tuple[Coordinate, Coordinate]
+Velocity = Annotated[float, limits(-1000.0, 1000.0, " mm/s")]
+Angle = Annotated[float, limits(-360.0, 360.0, "°")]
+Share = Annotated[float, limits(0.0, 1.0)]
+Frequency = Annotated[float, limits(LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, " Hz")]
+
+
+class Measured(Table, frozen=True, kw_only=True):
+    """A table whose numbers are within the limits of its fields.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or a signal is given as the speed of what does not move.
+    """
+
+    def __post_init__(self) -> None:
+        for name, check in _checks(type(self)):
+            check(words_of(name), getattr(self, name))
+        by = getattr(self, "velocity_by", "")
+        if by and getattr(self, "velocity_mm_s", getattr(self, "velocity_deg_s", 0.0)) in (
+            0,
+            (0, 0),
+        ):
+            raise ValueError(f"velocity_by is {by!r} without a velocity; add one, or leave it out")
+
+
+@cache
+def _checks(kind: type[Measured]) -> list[tuple[str, _Check]]:
+    """Functions that check the fields of a table that have limits, with the names of these."""
+    found = (
+        (name, _check_of(hint)) for name, hint in get_type_hints(kind, include_extras=True).items()
+    )
+    return [(name, check) for name, check in found if check is not None]
+
+
+def _check_of(hint: Any) -> _Check | None:
+    inner = get_args(hint)
+    if get_origin(hint) is Annotated:
+        low, high, unit = inner[1].extra["limits"]
+        return lambda what, value: check_range(what, value, low, high, unit)
+    check = next(filter(None, map(_check_of, inner)), None)
+    if check is None or get_origin(hint) is not tuple:
+        return check
+
+    def check_each(what: str, values: Any) -> None:
+        for number, value in enumerate(values or ()):
+            one = f"number {number + 1}" if Ellipsis in inner else "xy"[number]
+            check(f"{what}, {one}", value)
+
+    return check_each
 
 
 class RidgeWave(NamedTuple):
@@ -36,68 +105,6 @@ class RidgeWave(NamedTuple):
         return abs(self.speed) / self.length
 
 
-def check_length(what: str, value_mm: float | None, least_mm: float = LEAST_MM) -> None:
-    """Check a length, width or radius; None passes.
-
-    Raises
-    ------
-    ValueError
-        If it is below the least one or above 10 m, or no number.
-    """
-    check_range(what, value_mm, least_mm, MOST_MM, " mm")
-
-
-def check_point(what: str, point_mm: Point) -> None:
-    """Check that a place is on or near a canvas.
-
-    Raises
-    ------
-    ValueError
-        If a coordinate is no number, or farther than 10 m from the origin.
-    """
-    for axis, value in zip("xy", point_mm, strict=True):
-        check_range(f"{what}, {axis}", value, -MOST_MM, MOST_MM, " mm")
-
-
-def check_share(what: str, value: float | None) -> None:
-    """Check an amplitude or another share; None passes.
-
-    Raises
-    ------
-    ValueError
-        If it is not from 0 to 1.
-    """
-    check_range(what, value, 0.0, 1.0)
-
-
-def check_zooms(begins: float | None, ends: float | None) -> None:
-    """Check the zooms from which on a pattern is there, and is not; None for no such limit.
-
-    Raises
-    ------
-    ValueError
-        If one is beyond what pictures are zoomed to, or it would never be there.
-    """
-    check_range("zoom_from", begins, LEAST_ZOOM, MOST_ZOOM)
-    check_range("zoom_to", ends, LEAST_ZOOM, MOST_ZOOM)
-    if begins is not None and ends is not None and begins >= ends:
-        raise ValueError(
-            f"zoom_to is {ends:g}, and zoom_from {begins:g}, so that it is never there; "
-            "give zoom_to a larger number"
-        )
-
-
-def check_angle(what: str, value_deg: float | None) -> None:
-    """Check an angle in degrees; None passes.
-
-    Raises
-    ------
-    ValueError
-        If it is beyond a turn in either direction, or no number.
-    """
-    check_range(what, value_deg, -360.0, 360.0, "°")
-
-
 def travel_deg(wave_angle_deg: float | None, ridge_angle_deg: float | None) -> float:
     """Direction in which a grating's wave travels, in degrees from +x towards +y.
 
@@ -107,18 +114,6 @@ def travel_deg(wave_angle_deg: float | None, ridge_angle_deg: float | None) -> f
     if ridge_angle_deg is not None:
         return math.fmod(ridge_angle_deg + 90.0, 360.0)
     return 0.0 if wave_angle_deg is None else wave_angle_deg
-
-
-def check_velocity_by(name: str, moves: bool) -> None:
-    """Refuse the name of a signal as the speed of what does not move.
-
-    Raises
-    ------
-    ValueError
-        If there is such a name, and no velocity.
-    """
-    if name and not moves:
-        raise ValueError(f"velocity_by is {name!r} without a velocity; add one, or leave it out")
 
 
 def check_file(name: str, what: str = "file") -> None:

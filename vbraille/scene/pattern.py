@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from vbraille.scene.measures import RidgeWave, check_file, check_share, check_zooms
+from typing import Annotated
+
+from vbraille.scene.measures import Measured, RidgeWave, Share, check_file, limits
 from vbraille.scene.strokes import Vibration
-from vbraille.toml import Table
+
+Zoom = Annotated[float, limits(0.5, 16.0)]
 
 
-class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
+class Pattern(Measured, frozen=True, kw_only=True, tag_field="kind"):
     """Base of patterns of every kind.
 
     The changes are made in this order: amplitude, inversion, vibration, factor.
@@ -44,20 +47,25 @@ class Pattern(Table, frozen=True, kw_only=True, tag_field="kind"):
     id: str = ""
     title: str = ""
     description: str = ""
-    amplitude: float = 1.0
+    amplitude: Share = 1.0
     inverted: bool = False
     vibration: Vibration | None = None
     words: str = ""
     sound: str = ""
     factor: str = ""
-    zoom_from: float | None = None
-    zoom_to: float | None = None
+    zoom_from: Zoom | None = None
+    zoom_to: Zoom | None = None
 
     def __post_init__(self) -> None:
-        check_share("amplitude", self.amplitude)
+        super().__post_init__()
         if self.sound:
             check_file(self.sound, "sound")
-        check_zooms(self.zoom_from, self.zoom_to)
+        begins, ends = self.zoom_from, self.zoom_to
+        if begins is not None and ends is not None and begins >= ends:
+            raise ValueError(
+                f"zoom_to is {ends:g}, and zoom_from {begins:g}, so that it is never there; "
+                "give zoom_to a larger number"
+            )
 
     @property
     def wave(self) -> RidgeWave | None:

@@ -7,20 +7,23 @@ The classes are tables of scene files at the same time: their fields are the key
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import Annotated, Literal
 
-from vbraille.errors import check_range
 from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.measures import (
     LEAST_APART_MM,
+    MOST_MM,
+    Angle,
+    Distance,
+    Length,
+    Measured,
     Point,
     RidgeWave,
-    check_angle,
+    Share,
+    Size,
+    Velocity,
     check_file,
-    check_length,
-    check_point,
-    check_share,
-    check_velocity_by,
+    limits,
 )
 from vbraille.scene.pattern import Pattern
 from vbraille.scene.strokes import DotStyle, Dotting, MovingCue, Stroke, VertexMarkers
@@ -32,7 +35,6 @@ from vbraille.scene.textures import (
     Uniform,
     UniformVibration,
 )
-from vbraille.toml import Table
 
 
 class Label(Pattern, frozen=True, kw_only=True, tag="label"):
@@ -59,17 +61,14 @@ class Label(Pattern, frozen=True, kw_only=True, tag="label"):
 
     text: str
     place_mm: Point
-    width_mm: float | None = None
+    width_mm: Annotated[float, limits(1.0, MOST_MM, " mm")] | None = None
     table: str = ""
-    angle_deg: float = 0.0
+    angle_deg: Angle = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if not self.text.strip():
             raise ValueError("text is empty; a label needs one")
-        check_point("place", self.place_mm)
-        check_length("width", self.width_mm, 1.0)
-        check_angle("angle", self.angle_deg)
 
 
 class Dots(Pattern, frozen=True, kw_only=True, tag="dots"):
@@ -95,8 +94,6 @@ class Dots(Pattern, frozen=True, kw_only=True, tag="dots"):
         super().__post_init__()
         if not self.centers_mm:
             raise ValueError("centers are missing; give at least one")
-        for number, center in enumerate(self.centers_mm, 1):
-            check_point(f"centers, number {number}", center)
 
 
 class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
@@ -134,22 +131,16 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
 
     file: str
     place_mm: Point = (0.0, 0.0)
-    width_mm: float | None = None
-    height_mm: float | None = None
-    threshold: float = 0.1
+    width_mm: Size | None = None
+    height_mm: Size | None = None
+    threshold: Share = 0.1
     by_area: bool = True
-    cell_mm: Point | None = None
+    cell_mm: tuple[Size, Size] | None = None
     dot: DotStyle = DotStyle(plateau=0.25)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         check_file(self.file)
-        check_point("place", self.place_mm)
-        check_length("width", self.width_mm, 0.1)
-        check_length("height", self.height_mm, 0.1)
-        check_share("threshold", self.threshold)
-        for side in self.cell_mm or ():
-            check_length("cell", side, 0.1)
 
 
 class Shape(Pattern, frozen=True, kw_only=True):
@@ -182,19 +173,20 @@ class Shape(Pattern, frozen=True, kw_only=True):
             raise ValueError("cue needs a stroke or dots that it goes along; add one")
 
     @property
+    def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
+        """Places of each contour of its path, and whether they close; a circle has none."""
+        return (), True
+
+    @property
     def wave(self) -> RidgeWave | None:
         """Length and speed of ridges and gaps along its stroke; None if it has none."""
         return self.stroke.along.wave if self.stroke and self.stroke.along else None
 
     @property
     def flows(self) -> tuple[RidgeWave, ...]:
-        """All that flows along its path by itself, as waves; dots are no farther apart."""
-        dots, cue = self.dots, self.cue
-        found = [self.wave, None if cue is None else cue.wave]
-        if dots is not None:
-            spacing_mm = 2 * dots.dot.radius_mm + dots.separation_mm
-            found.append(RidgeWave(spacing_mm, dots.velocity_mm_s))
-        return tuple(wave for wave in found if wave is not None and wave.speed)
+        """All that flows along its path by itself, as waves."""
+        found = [self.wave, self.cue and self.cue.wave, self.dots and self.dots.wave]
+        return tuple(wave for wave in found if wave and wave.speed)
 
     @property
     def width_mm(self) -> float:
@@ -246,11 +238,14 @@ class StraightLine(Shape, frozen=True, kw_only=True, tag="line"):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_point("start", self.start_mm)
-        check_point("end", self.end_mm)
         if math.dist(self.start_mm, self.end_mm) < LEAST_APART_MM:
             raise ValueError("end is where the line starts; a line needs two places")
         check_drawn(self, None)
+
+    @property
+    def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
+        """Its two ends."""
+        return ((self.start_mm, self.end_mm),), False
 
 
 def check_points(what: str, points_mm: tuple[Point, ...], least: int, *, closed: bool) -> None:
@@ -258,7 +253,6 @@ def check_points(what: str, points_mm: tuple[Point, ...], least: int, *, closed:
     if len(points_mm) < least:
         raise ValueError(f"{what} are {len(points_mm)}; there must be {least} or more")
     for number, point in enumerate(points_mm, 1):
-        check_point(f"{what}, number {number}", point)
         if number > 1 and math.dist(point, points_mm[number - 2]) < LEAST_APART_MM:
             raise ValueError(f"{what}, number {number} is the place before it; leave it out")
     if closed and math.dist(points_mm[-1], points_mm[0]) < LEAST_APART_MM:
@@ -290,16 +284,10 @@ class Tile(Pattern, frozen=True, kw_only=True, tag="tile"):
         If a number is out of range.
     """
 
-    width_mm: float
-    height_mm: float
+    width_mm: Size
+    height_mm: Size
     part: AnyPattern
     origin_mm: Point = (0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_length("width", self.width_mm, 0.1)
-        check_length("height", self.height_mm, 0.1)
-        check_point("origin", self.origin_mm)
 
 
 class Moving(Pattern, frozen=True, kw_only=True, tag="moving"):
@@ -324,17 +312,9 @@ class Moving(Pattern, frozen=True, kw_only=True, tag="moving"):
     """
 
     part: AnyPattern
-    velocity_mm_s: Point = (0.0, 0.0)
+    velocity_mm_s: tuple[Velocity, Velocity] = (0.0, 0.0)
     velocity_by: str = ""
     array_at_mm: Point | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        for axis, velocity in zip("xy", self.velocity_mm_s, strict=True):
-            check_range(f"velocity, {axis}", velocity, -1000.0, 1000.0, " mm/s")
-        check_velocity_by(self.velocity_by, any(self.velocity_mm_s))
-        if self.array_at_mm is not None:
-            check_point("array_at", self.array_at_mm)
 
 
 class Image(Pattern, frozen=True, kw_only=True, tag="image"):
@@ -372,26 +352,21 @@ class Image(Pattern, frozen=True, kw_only=True, tag="image"):
 
     file: str
     place_mm: Point = (0.0, 0.0)
-    width_mm: float | None = None
-    height_mm: float | None = None
+    width_mm: Size | None = None
+    height_mm: Size | None = None
     channel: Literal["gray", "alpha"] = "gray"
     inverted_source: bool = False
-    blur_mm: float = 0.0
-    outside: float = 0.0
+    blur_mm: Annotated[float, limits(0.0, 100.0, " mm")] = 0.0
+    outside: Share = 0.0
     nearest: bool = False
     texture: AnyPattern | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
         check_file(self.file)
-        check_point("place", self.place_mm)
-        check_length("width", self.width_mm, 0.1)
-        check_length("height", self.height_mm, 0.1)
-        check_range("blur", self.blur_mm, 0.0, 100.0, " mm")
-        check_share("outside", self.outside)
 
 
-class Fill(Table, frozen=True, kw_only=True):
+class Fill(Measured, frozen=True, kw_only=True):
     """Filling of a closed shape: Lévesque 2009, fig. 8.21 and eq. 8.20.
 
     Parameters
@@ -413,13 +388,9 @@ class Fill(Table, frozen=True, kw_only=True):
     """
 
     texture: AnyPattern
-    gap_mm: float = 0.0
-    fade_mm: float = 1.0
+    gap_mm: Distance = 0.0
+    fade_mm: Distance = 1.0
     blended: bool = False
-
-    def __post_init__(self) -> None:
-        check_length("gap", self.gap_mm, 0.0)
-        check_length("fade", self.fade_mm, 0.0)
 
 
 class Circle(Shape, frozen=True, kw_only=True, tag="circle"):
@@ -439,13 +410,11 @@ class Circle(Shape, frozen=True, kw_only=True, tag="circle"):
     """
 
     center_mm: Point
-    radius_mm: float
+    radius_mm: Length
     fill: Fill | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_point("center", self.center_mm)
-        check_length("radius", self.radius_mm)
         check_drawn(self, self.fill)
 
 
@@ -475,7 +444,7 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
 
     vertices_mm: tuple[Point, ...]
     join: Literal["straight", "rounded"] = "rounded"
-    rounding_offset_mm: float = 0.0
+    rounding_offset_mm: Distance = 0.0
     fill: Fill | None = None
     markers: VertexMarkers | None = None
 
@@ -489,8 +458,12 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
                 f"vertices make edges that cross or touch, those after number {first} and number "
                 f"{second}; set them in order around the shape"
             )
-        check_length("rounding offset", self.rounding_offset_mm, 0.0)
         check_drawn(self, self.fill)
+
+    @property
+    def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
+        """Its vertices."""
+        return (self.vertices_mm,), True
 
 
 class PathShape(Shape, frozen=True, kw_only=True, tag="path"):
@@ -526,6 +499,11 @@ class PathShape(Shape, frozen=True, kw_only=True, tag="path"):
             raise ValueError("fill needs a closed path; write closed = true")
         check_drawn(self, self.fill)
 
+    @property
+    def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
+        """Its contours."""
+        return self.contours_mm, self.closed
+
 
 Operation = Literal["overwrite", "multiply", "add", "weighted", "maximum", "blend"]
 
@@ -554,7 +532,7 @@ class Group(Pattern, frozen=True, kw_only=True, tag="group"):
 
     operation: Operation = "overwrite"
     parts: tuple[AnyPattern, ...]
-    weights: tuple[float, ...] | None = None
+    weights: tuple[Share, ...] | None = None
     by: AnyPattern | None = None
 
     def __post_init__(self) -> None:
@@ -563,11 +541,11 @@ class Group(Pattern, frozen=True, kw_only=True, tag="group"):
             raise ValueError("parts are missing; give at least one")
         if (self.weights is not None) != (self.operation == "weighted"):
             raise ValueError('weights belong to operation = "weighted", and to no other')
-        if self.weights is not None:
-            for number, weight in enumerate(self.weights, 1):
-                check_share(f"weights, number {number}", weight)
-            if len(self.weights) != len(self.parts) or abs(sum(self.weights) - 1.0) > 1e-6:
-                raise ValueError("weights must be one for each part, and add up to 1")
+        weights = self.weights
+        if weights is not None and (
+            len(weights) != len(self.parts) or abs(sum(weights) - 1.0) > 1e-6
+        ):
+            raise ValueError("weights must be one for each part, and add up to 1")
         if (self.by is not None) != (self.operation == "blend"):
             raise ValueError('by belongs to operation = "blend", and to no other')
         if self.operation == "blend" and len(self.parts) != 2:
@@ -597,7 +575,6 @@ class Use(Pattern, frozen=True, kw_only=True, tag="use"):
         super().__post_init__()
         if not self.name:
             raise ValueError("name is empty; say which element or texture is used")
-        check_point("move", self.move_mm)
 
 
 AnyPattern = (

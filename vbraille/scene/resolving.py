@@ -2,31 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections import Counter
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
 from vbraille.scene.dotting import most_dots_of
 from vbraille.scene.locations import Locations
+from vbraille.scene.pattern import Pattern
 from vbraille.scene.patterns import Group, ImageDots, Use
-from vbraille.scene.signals import MOST_SIGNALS, Switch, circle, made_of
+from vbraille.scene.signals import MOST_SIGNALS, Switch, made_of, ordered
 from vbraille.scene.stock import STOCK, stock_textures
 from vbraille.scene.traversal import (
-    LISTS,
-    SEVERAL,
+    children,
     each,
     moved,
     placed_children,
+    points_of,
     signals_of,
     with_children,
 )
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator, Mapping
 
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
@@ -36,6 +37,15 @@ if TYPE_CHECKING:
 MOST_PATTERNS, MOST_POINTS = 200_000, 4_000_000
 MOST_DOTS = 200_000  # along shapes, which no author has written down
 MOST_DEPTH = 32
+_MOST = {
+    "dots along shapes; set them farther apart, or use fewer": MOST_DOTS,
+    "patterns; use fewer": MOST_PATTERNS,
+    "points; use fewer": MOST_POINTS,
+}
+_TOO_DEEP = f"nests more than {MOST_DEPTH} deep by what it uses; make it flatter"
+# Keys that a use can have without a group around what it names.
+_CALLED: tuple[str, ...] = ("id", "title", "description")
+_NAMELESS: dict[str, str] = dict.fromkeys(_CALLED, "")
 
 
 def resolve(scene: Scene, folder: Path | None = None, locations: Locations | None = None) -> Scene:
@@ -66,15 +76,12 @@ def resolve(scene: Scene, folder: Path | None = None, locations: Locations | Non
     return _Resolving(scene, folder or Path(), locations or Locations()).scene()
 
 
-@dataclass(frozen=True, slots=True)
-class _Body:
-    """Pattern that a name stands for, without names, and how much it is."""
+class _Body(NamedTuple):
+    """Pattern that a name stands for, without names, how deep it nests, and how much it is."""
 
     pattern: AnyPattern
-    patterns: int
-    points: int
-    dots: int
     depth: int
+    amounts: Counter[str]
 
 
 class _Resolving:
@@ -85,57 +92,52 @@ class _Resolving:
         self._named: dict[str, tuple[Steps, AnyPattern]] = {}
         self._bodies: dict[str, _Body] = {}
         self._open: list[str] = []  # names whose uses are being replaced, outermost first
-        self._patterns = self._points = self._dots = 0
+        self._amounts: Counter[str] = Counter()
 
     def scene(self) -> Scene:
         """Resolve the whole scene."""
-        textures = self._written.textures
-        for name, pattern in textures.items():
+        written = self._written
+        for name, pattern in written.textures.items():
             self._name(("textures", name), name, pattern)
         for steps, pattern in self._all():
-            self._count(steps, 1, points_of(pattern), most_dots_of(pattern))
+            self._count(steps, _amounts(pattern))
             if pattern.id:
                 self._name(steps, pattern.id, pattern)
+            for more, name in signals_of(pattern):
+                self._check_signal((*steps, *more), name)
         self._check_signals()
-        for name in textures:  # also those that nothing uses are to be right
-            self._body(name, ("textures", name))
+        for name in written.textures:  # also those that nothing uses are to be right
+            self._body(name, ("textures", name), 1)
         elements = tuple(
-            self._resolved(element, ("elements", number))
-            for number, element in enumerate(self._written.elements)
+            self._resolved(element, ("elements", number), 1)
+            for number, element in enumerate(written.elements)
         )
-        return replace(self._written, textures={}, elements=elements)
+        return replace(written, textures={}, elements=elements)
 
     def _check_signals(self) -> None:
         """Refuse signals that lead back to themselves or are not there, and too many of them."""
         signals = self._written.signals
-        for name, signal in signals.items():
+        keys: dict[int, tuple[str, int]] = {}
+        for number, (name, signal) in enumerate(signals.items()):
+            steps = ("signals", name)
+            if number == MOST_SIGNALS:
+                self._fail(steps, f"is one signal more than the {MOST_SIGNALS} there can be")
             for one in made_of(signal):
-                self._check_signal(("signals", name), one)
+                self._check_signal(steps, one)
             if isinstance(signal, Switch):
-                self._check_levels(name, signal)
-        way = circle(signals)
-        if way:
-            self._fail(("signals", way[0]), f"is made of itself: {', '.join(way)}; leave one out")
-        for steps, pattern in self._all():
-            for more, name in signals_of(pattern):
-                self._check_signal((*steps, *more), name)
-        if len(signals) > MOST_SIGNALS:
-            last = list(signals)[MOST_SIGNALS]
-            self._fail(
-                ("signals", last), f"is one signal more than the {MOST_SIGNALS} there can be"
-            )
-
-    def _check_levels(self, name: str, switch: Switch) -> None:
-        """Refuse switches of one key that have not the same number of states."""
-        for other, one in self._written.signals.items():
-            if isinstance(one, Switch) and one.key == switch.key:
-                if len(one.levels) == len(switch.levels):
-                    return
-                self._fail(
-                    ("signals", name),
-                    f"has {len(switch.levels)} levels, and {other}, of the same key "
-                    f"{switch.key}, {len(one.levels)}; give both as many",
-                )
+                levels = len(signal.levels)
+                other, others = keys.setdefault(signal.key, (name, levels))
+                if levels != others:
+                    self._fail(
+                        steps,
+                        f"has {levels} levels, and {other}, of the same key {signal.key}, "
+                        f"{others}; give both as many",
+                    )
+        try:
+            ordered(signals)
+        except ValueError as error:
+            way = ", ".join(error.args)
+            self._fail(("signals", error.args[0]), f"is made of itself: {way}; leave one out")
 
     def _check_signal(self, steps: Steps, name: str) -> None:
         signals = self._written.signals
@@ -159,30 +161,23 @@ class _Resolving:
     def _name(self, steps: Steps, name: str, pattern: AnyPattern) -> None:
         if name.startswith(STOCK):
             self._fail(steps, f"is called {name}; only the program's own names begin with {STOCK}")
-        if name in self._named and self._named[name][0] != steps:
-            first = self._locations.place(self._named[name][0])
+        there, _ = self._named.setdefault(name, (steps, pattern))
+        if there != steps:
+            first = self._locations.place(there)
             self._fail(steps, f"is called {name}, as is {first}; give it another name")
-        self._named[name] = steps, pattern
 
-    def _count(self, steps: Steps, patterns: int, points: int, dots: int) -> None:
+    def _count(self, steps: Steps, amounts: Mapping[str, int]) -> None:
         """Refuse what no memory holds, before it is made."""
-        self._patterns += patterns
-        self._points += points
-        self._dots += dots
-        if self._dots > MOST_DOTS:
-            self._fail(
-                steps,
-                f"makes it more than {MOST_DOTS} dots along shapes; set them farther apart, or "
-                "use fewer",
-            )
-        if self._patterns > MOST_PATTERNS:
-            self._fail(steps, f"makes it more than {MOST_PATTERNS} patterns; use fewer")
-        if self._points > MOST_POINTS:
-            self._fail(steps, f"makes it more than {MOST_POINTS} points; use fewer")
+        self._amounts.update(amounts)
+        for what, most in _MOST.items():
+            if self._amounts[what] > most:
+                self._fail(steps, f"makes it more than {most} {what}")
 
-    def _resolved(self, pattern: AnyPattern, steps: Steps) -> AnyPattern:
+    def _resolved(self, pattern: AnyPattern, steps: Steps, depth: int) -> AnyPattern:
+        if depth > MOST_DEPTH:
+            self._fail(steps, _TOO_DEEP)
         if isinstance(pattern, Use):
-            return self._used(pattern, steps)
+            return self._used(pattern, steps, depth)
         if isinstance(pattern, ImageDots):
             from vbraille.scene.blobs import dots_of  # loads the reading of images
 
@@ -190,101 +185,79 @@ class _Resolving:
                 return dots_of(pattern, self._folder)
             except InputError as error:
                 self._fail(steps, f": {error}")
-        return with_children(pattern, lambda more, part: self._resolved(part, (*steps, *more)))
+        return with_children(
+            pattern, lambda more, part: self._resolved(part, (*steps, *more), depth + 1)
+        )
 
-    def _used(self, use: Use, steps: Steps) -> AnyPattern:
-        """Tell what a use stands for, with its changes."""
-        body = self._body(use.name, steps)
-        self._count(steps, body.patterns, body.points, body.dots)
+    def _used(self, use: Use, steps: Steps, depth: int) -> AnyPattern:
+        """Return what a use stands for, with its changes."""
+        body = self._body(use.name, steps, depth)
+        self._count(steps, body.amounts)
         try:
             pattern = moved(body.pattern, use.move_mm)
         except ValueError as error:
             self._fail(steps, f"cannot be moved so far: {error}")
-        title = use.title or pattern.title
-        description = use.description or pattern.description
-        changed = use.amplitude != 1.0 or use.inverted or use.vibration or use.factor
-        heard = use.words or use.sound
-        if not (changed or heard) and use.zoom_from is None and use.zoom_to is None:
-            return _called(pattern, use.id, title, description)
-        return Group(
-            operation="maximum",
-            parts=(_called(pattern, "", "", ""),),
-            words=use.words or pattern.words,
-            sound=use.sound or pattern.sound,
-            amplitude=use.amplitude,
-            inverted=use.inverted,
-            vibration=use.vibration,
-            factor=use.factor,
-            zoom_from=use.zoom_from,
-            zoom_to=use.zoom_to,
-            id=use.id,
-            title=title,
-            description=description,
-        )
+        own = {key: getattr(use, key) for key in Pattern.__struct_fields__}
+        for key in ("title", "description", "words", "sound"):
+            own[key] = own[key] or getattr(pattern, key)
+        called: dict[Any, Any] = {key: own[key] for key in _CALLED}
+        if replace(use, **called) == Use(name=use.name, move_mm=use.move_mm, **called):
+            return _called(pattern, called)
+        return Group(operation="maximum", parts=(_called(pattern, _NAMELESS),), **own)
 
-    def _body(self, name: str, steps: Steps) -> _Body:
-        """Tell what a name stands for, made once."""
-        if name in self._bodies:
-            return self._bodies[name]
+    def _body(self, name: str, steps: Steps, depth: int) -> _Body:
+        """Return what a name stands for, made once; it is to stand at a depth."""
+        if name not in self._bodies:
+            there, written = self._of_name(name, steps)
+            self._open.append(name)
+            pattern = _nameless(self._resolved(written, there, depth))
+            self._open.pop()
+            amounts: Counter[str] = Counter()
+            for one in each(pattern):
+                amounts.update(_amounts(one))
+            self._bodies[name] = _Body(pattern, _depth(pattern), amounts)
+        body = self._bodies[name]
+        if depth + body.depth > MOST_DEPTH + 1:
+            self._fail(steps, _TOO_DEEP)
+        return body
+
+    def _of_name(self, name: str, steps: Steps) -> tuple[Steps, AnyPattern]:
+        """Return the pattern that has a name, as it is written, and its place."""
         if name in self._open:
             way = ", ".join([*self._open[self._open.index(name) :], name])
             self._fail(steps, f"uses itself: {way}; leave one of these uses out")
         if len(self._open) >= MOST_DEPTH:
             self._fail(steps, f"uses uses more than {MOST_DEPTH} deep; make it flatter")
-        if name.startswith(STOCK):
-            stock = stock_textures()
-            if name.removeprefix(STOCK) not in stock:
-                self._fail_unknown(name, steps, [f"{STOCK}{one}" for one in stock])
-            pattern = stock[name.removeprefix(STOCK)]
-        elif name in self._named:
-            there, written = self._named[name]
-            self._open.append(name)
-            pattern = self._resolved(written, there)
-            self._open.pop()
-        else:
-            stock = [f"{STOCK}{one}" for one in stock_textures()]
-            self._fail_unknown(name, steps, [*self._named, *stock])
-        body = _measured(_nameless(pattern))
-        if body.depth > MOST_DEPTH:
-            self._fail(steps, f"nests more than {MOST_DEPTH} deep by what it uses; make it flatter")
-        self._bodies[name] = body
-        return body
+        if name in self._named:
+            return self._named[name]
+        stock = {f"{STOCK}{one}": pattern for one, pattern in stock_textures().items()}
+        if name not in stock:
+            known = stock if name.startswith(STOCK) else [*self._named, *stock]
+            self._fail(
+                steps, f"name is {name!r}, which nothing here is called{nearest(name, known)}"
+            )
+        return steps, stock[name]
 
     def _fail(self, steps: Steps, problem: str) -> NoReturn:
         self._locations.fail(steps, problem)
 
-    def _fail_unknown(self, name: str, steps: Steps, names: Iterable[str]) -> NoReturn:
-        self._fail(steps, f"name is {name!r}, which nothing here is called{nearest(name, names)}")
+
+def _amounts(pattern: AnyPattern) -> dict[str, int]:
+    """Tell how much a pattern is without what stands in it, by the words of the limits."""
+    return dict(zip(_MOST, (most_dots_of(pattern), 1, len(points_of(pattern))), strict=True))
 
 
-def points_of(pattern: AnyPattern) -> int:
-    """Number of points that a pattern has itself."""
-    several = sum(len(getattr(pattern, name)) for name in SEVERAL if hasattr(pattern, name))
-    lists = (getattr(pattern, name) for name in LISTS if hasattr(pattern, name))
-    return several + sum(len(one) for contours in lists for one in contours)
+def _depth(pattern: AnyPattern) -> int:
+    return 1 + max(map(_depth, children(pattern)), default=0)
 
 
 def _nameless(pattern: AnyPattern) -> AnyPattern:
     """Pattern without ids, since each is the name of one thing."""
-    inside = with_children(pattern, lambda _, part: _nameless(part))
-    return _called(inside, "", inside.title, inside.description)
+    return _called(with_children(pattern, lambda _, part: _nameless(part)), {"id": ""})
 
 
-def _called(pattern: AnyPattern, name: str, title: str, description: str) -> AnyPattern:
-    """Pattern with another id, title and description; made anew, and checked, only if need be."""
-    if (pattern.id, pattern.title, pattern.description) == (name, title, description):
+def _called(pattern: AnyPattern, called: Mapping[str, str]) -> AnyPattern:
+    """Pattern with another id, title or description; made anew, and checked, only if need be."""
+    if all(getattr(pattern, key) == text for key, text in called.items()):
         return pattern
-    return replace(pattern, id=name, title=title, description=description)
-
-
-def _measured(pattern: AnyPattern) -> _Body:
-    patterns = points = dots = depth = 0
-    for one in each(pattern):
-        patterns += 1
-        points += points_of(one)
-        dots += most_dots_of(one)
-    level = [pattern]
-    while level:
-        depth += 1
-        level = [part for one in level for _, part in placed_children(one)]
-    return _Body(pattern, patterns, points, dots, depth)
+    return replace(pattern, **called)

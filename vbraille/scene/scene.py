@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from vbraille.errors import check_range
+from typing import Annotated
+
+from vbraille.scene.measures import MOST_MM, Measured, limits
 from vbraille.scene.pattern import Pattern
 from vbraille.scene.patterns import AnyPattern, Operation
 from vbraille.scene.signals import AnySignal
 from vbraille.toml import Table
 
+Side = Annotated[float, limits(1.0, MOST_MM, " mm")]
 
-class Canvas(Table, frozen=True, kw_only=True):
+
+class Canvas(Measured, frozen=True, kw_only=True):
     """The surface that a scene stands on; its origin is the top left, x right, y down.
 
     Parameters
@@ -23,12 +27,8 @@ class Canvas(Table, frozen=True, kw_only=True):
         If a number is out of range.
     """
 
-    width_mm: float
-    height_mm: float
-
-    def __post_init__(self) -> None:
-        check_range("width", self.width_mm, 1.0, 10_000.0, " mm")
-        check_range("height", self.height_mm, 1.0, 10_000.0, " mm")
+    width_mm: Side
+    height_mm: Side
 
 
 class Scene(Table, frozen=True, kw_only=True):
@@ -45,12 +45,12 @@ class Scene(Table, frozen=True, kw_only=True):
     operation
         How its elements are put together: "overwrite", by which each hides what it stands on, as
         in drawings, or one of the others that a group has.
-    elements
-        The elements in order, the last on top.
-    textures
-        Patterns by name, for `Use`.
     signals
         Numbers by name, by which patterns answer to the hand, to keys and to time.
+    textures
+        Patterns by name, for `Use`.
+    elements
+        The elements in order, the last on top.
 
     Raises
     ------
@@ -63,9 +63,9 @@ class Scene(Table, frozen=True, kw_only=True):
     description: str = ""
     language: str = "en"
     operation: Operation = "overwrite"
-    elements: tuple[AnyPattern, ...] = ()
-    textures: dict[str, AnyPattern] = {}  # noqa: RUF012 - msgspec copies an empty default
     signals: dict[str, AnySignal] = {}  # noqa: RUF012 - msgspec copies an empty default
+    textures: dict[str, AnyPattern] = {}  # noqa: RUF012 - msgspec copies an empty default
+    elements: tuple[AnyPattern, ...] = ()
 
     def __post_init__(self) -> None:
         # Files are read by these types; a program may give anything.

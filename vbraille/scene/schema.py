@@ -20,7 +20,7 @@ _NAMES = re.compile(r"^(\w+(?:, \w+)*)\n((?:^ +.*\n?|^\n)+)", re.MULTILINE)
 def scene_schema() -> dict[str, Any]:
     """JSON Schema of scene files, made from the values: their keys, types, defaults and docstrings.
 
-    Ranges of numbers, and what cannot go together, are not in it; the values check those.
+    What cannot go together is not in it; the values check that.
     """
     (made,), tables = msgspec.json.schema_components([SceneFile])
     for table in tables_of(SceneFile):

@@ -6,13 +6,12 @@ or of a pulse, as the speed of a motion. They are computed once a tick. Lévesqu
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 from msgspec.structs import replace
 
 from vbraille.errors import check_range
-from vbraille.scene.measures import check_angle, check_share
-from vbraille.toml import Table
+from vbraille.scene.measures import Angle, Measured, Share, limits
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -21,10 +20,13 @@ MOST_SIGNALS = 8
 MOST_LEVELS = 8
 MOST_KEYS = 8
 SWITCH_BITS = 3  # of a state
-_MOST_MM_S = 1000.0
+
+Below = Annotated[float, limits(0.0, 1000.0, " mm/s")]
+Transition = Annotated[float, limits(0.1, 1000.0, " mm/s")]
+Duration = Annotated[float, limits(0.0, 10.0, " s")]
 
 
-class Speed(Table, frozen=True, kw_only=True, tag_field="kind", tag="speed"):
+class Speed(Measured, frozen=True, kw_only=True, tag_field="kind", tag="speed"):
     """1 under a hand that is slow, 0 under one that is fast: Lévesque 2009, eqs. 9.6 and 9.7.
 
     Parameters
@@ -43,16 +45,12 @@ class Speed(Table, frozen=True, kw_only=True, tag_field="kind", tag="speed"):
         If a number is out of range.
     """
 
-    below_mm_s: float = 5.0
-    transition_mm_s: float = 5.0
-    delay_s: float = 0.25
-
-    def __post_init__(self) -> None:
-        _check_speeds(self.below_mm_s, self.transition_mm_s)
-        check_range("delay", self.delay_s, 0.0, 10.0, " s")
+    below_mm_s: Below = 5.0
+    transition_mm_s: Transition = 5.0
+    delay_s: Duration = 0.25
 
 
-class Direction(Table, frozen=True, kw_only=True, tag_field="kind", tag="direction"):
+class Direction(Measured, frozen=True, kw_only=True, tag_field="kind", tag="direction"):
     """1 where the hand goes in a direction, 0 elsewhere: Lévesque 2009, eqs. 9.8-9.10.
 
     Parameters
@@ -75,22 +73,16 @@ class Direction(Table, frozen=True, kw_only=True, tag_field="kind", tag="directi
         If a number is out of range.
     """
 
-    angle_deg: float = 0.0
+    angle_deg: Angle = 0.0
     axis: bool = False
-    tolerance_deg: float = 30.0
-    transition_deg: float = 20.0
+    tolerance_deg: Annotated[float, limits(0.0, 180.0, "°")] = 30.0
+    transition_deg: Annotated[float, limits(0.1, 180.0, "°")] = 20.0
     at_rest: Literal["high", "low", "keep"] = "keep"
-    below_mm_s: float = 0.0
-    slow_transition_mm_s: float = 5.0
-
-    def __post_init__(self) -> None:
-        check_angle("angle", self.angle_deg)
-        check_range("tolerance", self.tolerance_deg, 0.0, 180.0, "°")
-        check_range("transition", self.transition_deg, 0.1, 180.0, "°")
-        _check_speeds(self.below_mm_s, self.slow_transition_mm_s)
+    below_mm_s: Below = 0.0
+    slow_transition_mm_s: Transition = 5.0
 
 
-class Switch(Table, frozen=True, kw_only=True, tag_field="kind", tag="switch"):
+class Switch(Measured, frozen=True, kw_only=True, tag_field="kind", tag="switch"):
     """A level that a key of ``vbraille feel`` changes, such as of a layer: Lévesque 2009, 9.5.
 
     Parameters
@@ -112,23 +104,20 @@ class Switch(Table, frozen=True, kw_only=True, tag_field="kind", tag="switch"):
         If a number is out of range, or states and levels are not as many.
     """
 
-    key: int = 1
-    levels: tuple[float, ...] = (0.0, 1.0)
+    key: Annotated[int, limits(1, MOST_KEYS)] = 1
+    levels: tuple[Share, ...] = (0.0, 1.0)
     states: tuple[str, ...] = ()
     title: str = ""
-    fade_s: float = 0.1
+    fade_s: Duration = 0.1
 
     def __post_init__(self) -> None:
-        check_range("key", self.key, 1, MOST_KEYS)
+        super().__post_init__()
         check_range("number of levels", len(self.levels), 2, MOST_LEVELS)
-        for number, level in enumerate(self.levels, 1):
-            check_share(f"levels, number {number}", level)
         if self.states and len(self.states) != len(self.levels):
             raise ValueError(f"states are {len(self.states)}; there is one for each level")
-        check_range("fade", self.fade_s, 0.0, 10.0, " s")
 
 
-class Pulse(Table, frozen=True, kw_only=True, tag_field="kind", tag="time"):
+class Pulse(Measured, frozen=True, kw_only=True, tag_field="kind", tag="time"):
     """A pulse that repeats by itself, since the picture was put under the hand.
 
     Parameters
@@ -146,13 +135,10 @@ class Pulse(Table, frozen=True, kw_only=True, tag_field="kind", tag="time"):
     """
 
     shape: Literal["sine", "square", "ramp"] = "sine"
-    period_s: float = 1.0
-
-    def __post_init__(self) -> None:
-        check_range("period", self.period_s, 0.02, 3600.0, " s")
+    period_s: Annotated[float, limits(0.02, 3600.0, " s")] = 1.0
 
 
-class Product(Table, frozen=True, kw_only=True, tag_field="kind", tag="product"):
+class Product(Measured, frozen=True, kw_only=True, tag_field="kind", tag="product"):
     """Signals multiplied: 1 where all of them are.
 
     Parameters
@@ -172,7 +158,7 @@ class Product(Table, frozen=True, kw_only=True, tag_field="kind", tag="product")
         check_range("number of names in of", len(self.of), 2, MOST_SIGNALS)
 
 
-class Inverse(Table, frozen=True, kw_only=True, tag_field="kind", tag="inverse"):
+class Inverse(Measured, frozen=True, kw_only=True, tag_field="kind", tag="inverse"):
     """1 where another signal is 0, and 0 where that is 1.
 
     Parameters
@@ -185,11 +171,6 @@ class Inverse(Table, frozen=True, kw_only=True, tag_field="kind", tag="inverse")
 
 
 AnySignal = Speed | Direction | Switch | Pulse | Product | Inverse
-
-
-def _check_speeds(below_mm_s: float, transition_mm_s: float) -> None:
-    check_range("below", below_mm_s, 0.0, _MOST_MM_S, " mm/s")
-    check_range("transition", transition_mm_s, 0.1, _MOST_MM_S, " mm/s")
 
 
 class OrderedSignal(NamedTuple):
@@ -224,24 +205,8 @@ def renamed(signal: AnySignal, names: Mapping[str, str]) -> AnySignal:
     return replace(signal, of=names[signal.of]) if isinstance(signal, Inverse) else signal
 
 
-def circle(signals: Mapping[str, AnySignal]) -> tuple[str, ...]:
-    """Find names of signals of which each is made of the next, and the last is the first again."""
-    right: set[str] = set()
-    for name in signals:
-        way: list[tuple[str, ...]] = [(name,)]
-        while way:
-            names = way.pop()
-            for one in made_of(signals[names[-1]]):
-                if one in names:
-                    return (*names[names.index(one) :], one)
-                if one not in right:
-                    way.append((*names, one))
-        right.add(name)
-    return ()
-
-
 def ordered(signals: Mapping[str, AnySignal], driving: Iterable[str] = ()) -> list[OrderedSignal]:
-    """Put signals, of which none leads back to itself, into an order in which to compute them.
+    """Put signals into an order in which to compute them.
 
     Parameters
     ----------
@@ -249,19 +214,26 @@ def ordered(signals: Mapping[str, AnySignal], driving: Iterable[str] = ()) -> li
         The signals by their names.
     driving
         Names of those that are the speed of a motion; the integral of each comes last.
+
+    Raises
+    ------
+    ValueError
+        If a signal is made of itself; its arguments are names of which each is made of the next.
     """
     found: dict[str, int] = {}
     order: list[OrderedSignal] = []
 
-    def put(name: str) -> int:
+    def put(name: str, way: tuple[str, ...]) -> int:
+        if name in way:
+            raise ValueError(*way[way.index(name) :], name)
         if name not in found:
-            of = tuple(put(one) for one in made_of(signals[name]))
+            of = tuple(put(one, (*way, name)) for one in made_of(signals[name]))
             found[name] = len(order)
             order.append(OrderedSignal(name, signals[name], of))
         return found[name]
 
     for name in signals:
-        put(name)
+        put(name, ())
     return order + [OrderedSignal(name, None, (found[name],)) for name in dict.fromkeys(driving)]
 
 

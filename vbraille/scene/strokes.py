@@ -5,24 +5,25 @@ Lévesque 2009, 8.4.3 and 8.4.4.
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from vbraille.errors import check_range
 from vbraille.scene.measures import (
-    LEAST_FREQUENCY_HZ,
+    LEAST_MM,
     MOST_FREQUENCY_HZ,
+    MOST_MM,
+    Distance,
+    Frequency,
+    Length,
+    Measured,
     RidgeWave,
-    check_angle,
-    check_length,
-    check_share,
-    check_velocity_by,
+    Share,
+    Velocity,
+    limits,
 )
-from vbraille.toml import Table
-
-_MOST_CYCLES = 100
 
 
-class Vibration(Table, frozen=True, kw_only=True):
+class Vibration(Measured, frozen=True, kw_only=True):
     """A vibration of a pattern: neighbouring actuators swing against each other.
 
     Lévesque 2009, eqs. 8.1-8.3.
@@ -43,16 +44,12 @@ class Vibration(Table, frozen=True, kw_only=True):
         If a number is out of range.
     """
 
-    frequency_hz: float = MOST_FREQUENCY_HZ
-    amplitude: float = 1.0
+    frequency_hz: Frequency = MOST_FREQUENCY_HZ
+    amplitude: Share = 1.0
     of: Literal["high", "low"] = "high"
 
-    def __post_init__(self) -> None:
-        check_range("frequency", self.frequency_hz, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, " Hz")
-        check_share("amplitude", self.amplitude)
 
-
-class Across(Table, frozen=True, kw_only=True):
+class Across(Measured, frozen=True, kw_only=True):
     """A texture across a stroke or from the middle of a dot: Lévesque 2009, eq. 8.10.
 
     Parameters
@@ -68,17 +65,16 @@ class Across(Table, frozen=True, kw_only=True):
         If a number is out of range, or the cycles are even.
     """
 
-    amplitude: float = 0.5
-    cycles: int = 7
+    amplitude: Share = 0.5
+    cycles: Annotated[int, limits(1, 100)] = 7
 
     def __post_init__(self) -> None:
-        check_share("amplitude", self.amplitude)
-        check_range("cycles", self.cycles, 1, _MOST_CYCLES)
+        super().__post_init__()
         if self.cycles % 2 == 0:
             raise ValueError(f"cycles is {self.cycles}; it must be odd")
 
 
-class Along(Table, frozen=True, kw_only=True):
+class Along(Measured, frozen=True, kw_only=True):
     """A grating along a stroke, which cuts into it: Lévesque 2009, eqs. 8.11 and 8.12.
 
     Parameters
@@ -104,20 +100,13 @@ class Along(Table, frozen=True, kw_only=True):
         If a number is out of range.
     """
 
-    ridge_mm: float = 2.0
-    gap_mm: float = 0.0
-    amplitude: float = 1.0
+    ridge_mm: Length = 2.0
+    gap_mm: Distance = 0.0
+    amplitude: Share = 1.0
     whole_edges: bool = False
     whole_cycles: bool = True
-    velocity_mm_s: float = 0.0
+    velocity_mm_s: Velocity = 0.0
     velocity_by: str = ""
-
-    def __post_init__(self) -> None:
-        check_length("ridge", self.ridge_mm)
-        check_length("gap", self.gap_mm, 0.0)
-        check_share("amplitude", self.amplitude)
-        check_range("velocity", self.velocity_mm_s, -1000, 1000, " mm/s")
-        check_velocity_by(self.velocity_by, bool(self.velocity_mm_s))
 
     @property
     def wave(self) -> RidgeWave:
@@ -125,7 +114,7 @@ class Along(Table, frozen=True, kw_only=True):
         return RidgeWave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
 
 
-class Stroke(Table, frozen=True, kw_only=True):
+class Stroke(Measured, frozen=True, kw_only=True):
     """The stroke of a line, a circle, a polygon or a path: Lévesque 2009, eqs. 8.7-8.14.
 
     Parameters
@@ -149,19 +138,18 @@ class Stroke(Table, frozen=True, kw_only=True):
         If a number is out of range, or two of them cannot go together.
     """
 
-    width_mm: float = 4.0
+    width_mm: Length = 4.0
     edge_mm: float | Literal["smooth"] = 1.0
-    amplitude: float = 1.0
+    amplitude: Share = 1.0
     outlined: bool = False
     across: Across | None = None
     along: Along | None = None
     vibration: Vibration | None = None
 
     def __post_init__(self) -> None:
-        check_length("width", self.width_mm)
+        super().__post_init__()
         if self.edge_mm != "smooth":
-            check_length("edge", self.edge_mm)
-        check_share("amplitude", self.amplitude)
+            check_range("edge", self.edge_mm, LEAST_MM, MOST_MM, " mm")
         if self.outlined and self.along is not None:
             raise ValueError("outlined cannot be given beside along; whole_edges keeps the outline")
         four = self.outlined or (self.along is not None and self.along.whole_edges)
@@ -187,7 +175,7 @@ def _check_high(vibration: Vibration | None, what: str) -> None:
         raise ValueError(f'vibration of = "low" is not for {what}, which are up; write "high"')
 
 
-class DotStyle(Table, frozen=True, kw_only=True):
+class DotStyle(Measured, frozen=True, kw_only=True):
     """Look of dots: Lévesque 2009, 8.4.4, and eq. 6.1, which is the same with a plateau.
 
     Parameters
@@ -211,18 +199,15 @@ class DotStyle(Table, frozen=True, kw_only=True):
         If a number is out of range, both an edge and a plateau are given, or what is down vibrates.
     """
 
-    radius_mm: float = 1.0
-    edge_mm: float | None = None
-    plateau: float | None = None
-    amplitude: float = 1.0
+    radius_mm: Length = 1.0
+    edge_mm: Length | None = None
+    plateau: Annotated[float, limits(0.0, 0.95)] | None = None
+    amplitude: Share = 1.0
     across: Across | None = None
     vibration: Vibration | None = None
 
     def __post_init__(self) -> None:
-        check_length("radius", self.radius_mm)
-        check_length("edge", self.edge_mm)
-        check_range("plateau", self.plateau, 0.0, 0.95)
-        check_share("amplitude", self.amplitude)
+        super().__post_init__()
         if self.edge_mm is not None and self.plateau is not None:
             raise ValueError("plateau cannot be given beside edge_mm; leave one of them out")
         _check_high(self.vibration, "dots")
@@ -235,7 +220,7 @@ class DotStyle(Table, frozen=True, kw_only=True):
         return self.radius_mm * (1.0 - (self.plateau or 0.0))
 
 
-class Dotting(Table, frozen=True, kw_only=True):
+class Dotting(Measured, frozen=True, kw_only=True):
     """A row of dots along a shape, in place of a stroke: Lévesque 2009, 8.4.4.
 
     Parameters
@@ -259,19 +244,22 @@ class Dotting(Table, frozen=True, kw_only=True):
     """
 
     dot: DotStyle = DotStyle()
-    separation_mm: float = 1.0
+    separation_mm: Distance = 1.0
     vertex_vibration: Vibration | None = None
-    velocity_mm_s: float = 0.0
+    velocity_mm_s: Velocity = 0.0
     velocity_by: str = ""
 
     def __post_init__(self) -> None:
-        check_length("separation", self.separation_mm, 0.0)
+        super().__post_init__()
         _check_high(self.vertex_vibration, "dots")
-        check_range("velocity", self.velocity_mm_s, -1000, 1000, " mm/s")
-        check_velocity_by(self.velocity_by, bool(self.velocity_mm_s))
+
+    @property
+    def wave(self) -> RidgeWave:
+        """Distance of two dots, which are no farther apart, and their speed."""
+        return RidgeWave(2 * self.dot.radius_mm + self.separation_mm, self.velocity_mm_s)
 
 
-class MovingCue(Table, frozen=True, kw_only=True):
+class MovingCue(Measured, frozen=True, kw_only=True):
     """Bands that move along a shape, over what it is drawn with: Lévesque 2009, 9.3 and 9.3.2.
 
     Bands m as wide as the stroke change its texture before it is cut to its profile. Those that
@@ -307,24 +295,18 @@ class MovingCue(Table, frozen=True, kw_only=True):
     """
 
     way: Literal["vibrate", "blend", "mask", "add"] = "vibrate"
-    ridge_mm: float = 2.0
-    gap_mm: float = 15.0
-    velocity_mm_s: float = 50.0
+    ridge_mm: Length = 2.0
+    gap_mm: Distance = 15.0
+    velocity_mm_s: Velocity = 50.0
     velocity_by: str = ""
-    width_mm: float = 10.0
-    share: float = 0.3
-    level: float = 0.5
+    width_mm: Distance = 10.0
+    share: Share = 0.3
+    level: Share = 0.5
     vibration: Vibration | None = None
     whole_cycles: bool = True
 
     def __post_init__(self) -> None:
-        check_length("ridge", self.ridge_mm)
-        check_length("gap", self.gap_mm, 0.0)
-        check_range("velocity", self.velocity_mm_s, -1000, 1000, " mm/s")
-        check_velocity_by(self.velocity_by, bool(self.velocity_mm_s))
-        check_length("width", self.width_mm, 0.0)
-        check_share("share", self.share)
-        check_share("level", self.level)
+        super().__post_init__()
         _check_high(self.vibration, "bands")
 
     @property
@@ -340,7 +322,7 @@ class MovingCue(Table, frozen=True, kw_only=True):
         return self.vibration or (Vibration() if self.way == "vibrate" else None)
 
 
-class VertexMarkers(Table, frozen=True, kw_only=True):
+class VertexMarkers(Measured, frozen=True, kw_only=True):
     """Markers at the vertices of a polygon: Lévesque 2009, 8.4.3, figs. 8.19 and 8.20.
 
     Parameters
@@ -364,15 +346,13 @@ class VertexMarkers(Table, frozen=True, kw_only=True):
     """
 
     span: Literal["angle", "square", "edges", "arc"] = "edges"
-    angle_deg: float = 30.0
-    blend_mm: float = 1.0
+    angle_deg: Annotated[float, limits(1.0, 180.0, "°")] = 30.0
+    blend_mm: Length = 1.0
     vibration: Vibration = Vibration()
     plain: bool = False
 
     def __post_init__(self) -> None:
-        check_angle("angle", self.angle_deg)
-        check_range("angle", self.angle_deg, 1.0, 180.0, "°")
-        check_length("blend", self.blend_mm)
+        super().__post_init__()
         _check_high(self.vibration, "markers")
         if self.plain and self.vibration != Vibration():
             raise ValueError("vibration cannot be given beside plain = true; leave one out")

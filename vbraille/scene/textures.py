@@ -5,28 +5,31 @@ Lévesque 2009, 8.4.1.
 
 from __future__ import annotations
 
-from vbraille.errors import check_range
+from typing import Annotated
+
 from vbraille.scene.measures import (
     LEAST_APART_MM,
-    LEAST_FREQUENCY_HZ,
     MOST_FREQUENCY_HZ,
-    MOST_MM,
+    Angle,
+    Coordinate,
+    Distance,
+    Frequency,
+    Length,
+    Measured,
     Point,
     RidgeWave,
-    check_angle,
-    check_length,
-    check_point,
-    check_share,
-    check_velocity_by,
+    Share,
+    Velocity,
+    limits,
 )
 from vbraille.scene.pattern import Pattern
-from vbraille.toml import Table
 
-_LEAST_FACTOR, _MOST_FACTOR = 0.05, 20.0
-_LEAST_DEG = 0.5
+Factor = Annotated[float, limits(0.05, 20.0)]
+Turn = Annotated[float, limits(0.0, 360.0, "°")]
+Arc = Annotated[float, limits(0.5, 360.0, "°")]
 
 
-class Gradual(Table, frozen=True, kw_only=True, tag_field="kind", tag="gradual"):
+class Gradual(Measured, frozen=True, kw_only=True, tag_field="kind", tag="gradual"):
     """A spatial frequency that changes from one place to another: Lévesque 2009, eq. 8.5.
 
     Parameters
@@ -42,17 +45,12 @@ class Gradual(Table, frozen=True, kw_only=True, tag_field="kind", tag="gradual")
         If a number is out of range.
     """
 
-    factor: float = 5.0
-    start_mm: float = 0.0
-    length_mm: float = 100.0
-
-    def __post_init__(self) -> None:
-        check_range("factor", self.factor, _LEAST_FACTOR, _MOST_FACTOR)
-        check_range("start", self.start_mm, -MOST_MM, MOST_MM, " mm")
-        check_length("length", self.length_mm)
+    factor: Factor = 5.0
+    start_mm: Coordinate = 0.0
+    length_mm: Length = 100.0
 
 
-class Peak(Table, frozen=True, kw_only=True, tag_field="kind", tag="peak"):
+class Peak(Measured, frozen=True, kw_only=True, tag_field="kind", tag="peak"):
     """A spatial frequency that changes around a place and back: Lévesque 2009, eq. 8.6 (mended).
 
     Parameters
@@ -68,17 +66,12 @@ class Peak(Table, frozen=True, kw_only=True, tag_field="kind", tag="peak"):
         If a number is out of range.
     """
 
-    factor: float = 5.0
-    center_mm: float = 0.0
-    length_mm: float = 50.0
-
-    def __post_init__(self) -> None:
-        check_range("factor", self.factor, _LEAST_FACTOR, _MOST_FACTOR)
-        check_range("center", self.center_mm, -MOST_MM, MOST_MM, " mm")
-        check_length("length", self.length_mm)
+    factor: Factor = 5.0
+    center_mm: Coordinate = 0.0
+    length_mm: Length = 50.0
 
 
-class TurnPeak(Table, frozen=True, kw_only=True):
+class TurnPeak(Measured, frozen=True, kw_only=True):
     """A frequency of an axial grating that changes around an angle and back: eq. 8.6 in degrees.
 
     Parameters
@@ -94,14 +87,9 @@ class TurnPeak(Table, frozen=True, kw_only=True):
         If a number is out of range.
     """
 
-    factor: float = 5.0
-    center_deg: float = 180.0
-    length_deg: float = 40.0
-
-    def __post_init__(self) -> None:
-        check_range("factor", self.factor, _LEAST_FACTOR, _MOST_FACTOR)
-        check_range("center", self.center_deg, 0.0, 360.0, "°")
-        check_range("length", self.length_deg, _LEAST_DEG, 360.0, "°")
+    factor: Factor = 5.0
+    center_deg: Turn = 180.0
+    length_deg: Arc = 40.0
 
 
 class Uniform(Pattern, frozen=True, kw_only=True, tag="uniform"):
@@ -118,11 +106,7 @@ class Uniform(Pattern, frozen=True, kw_only=True, tag="uniform"):
         If it is out of range.
     """
 
-    level: float = 1.0
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_share("level", self.level)
+    level: Share = 1.0
 
 
 class UniformVibration(Pattern, frozen=True, kw_only=True, tag="vibration"):
@@ -139,11 +123,7 @@ class UniformVibration(Pattern, frozen=True, kw_only=True, tag="vibration"):
         If it is out of range.
     """
 
-    frequency_hz: float = MOST_FREQUENCY_HZ
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_range("frequency", self.frequency_hz, LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, " Hz")
+    frequency_hz: Frequency = MOST_FREQUENCY_HZ
 
 
 class SignalLevel(Pattern, frozen=True, kw_only=True, tag="signal"):
@@ -183,21 +163,18 @@ class LinearGrating(Pattern, frozen=True, kw_only=True, tag="linear-grating"):
         If a number is out of range, or both angles are given.
     """
 
-    ridge_mm: float
-    gap_mm: float = 0.0
-    wave_angle_deg: float | None = None
-    ridge_angle_deg: float | None = None
+    ridge_mm: Length
+    gap_mm: Distance = 0.0
+    wave_angle_deg: Angle | None = None
+    ridge_angle_deg: Angle | None = None
     start_mm: Point = (0.0, 0.0)
     distortion: Gradual | Peak | None = None
-    velocity_mm_s: float = 0.0
+    velocity_mm_s: Velocity = 0.0
     velocity_by: str = ""
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _check_grating(self)
-        check_angle("wave angle", self.wave_angle_deg)
-        check_angle("ridge angle", self.ridge_angle_deg)
-        check_point("start", self.start_mm)
+        _check_distortion(self.distortion, self.velocity_mm_s)
         if self.wave_angle_deg is not None and self.ridge_angle_deg is not None:
             raise ValueError("ridge_angle_deg cannot be given beside wave_angle_deg; leave one out")
 
@@ -230,16 +207,15 @@ class RadialGrating(Pattern, frozen=True, kw_only=True, tag="radial-grating"):
     """
 
     center_mm: Point
-    ridge_mm: float
-    gap_mm: float = 0.0
+    ridge_mm: Length
+    gap_mm: Distance = 0.0
     distortion: Gradual | Peak | None = None
-    velocity_mm_s: float = 0.0
+    velocity_mm_s: Velocity = 0.0
     velocity_by: str = ""
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _check_grating(self)
-        check_point("center", self.center_mm)
+        _check_distortion(self.distortion, self.velocity_mm_s)
 
     @property
     def wave(self) -> RidgeWave:
@@ -280,24 +256,18 @@ class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
     """
 
     center_mm: Point
-    ridge_deg: float
-    gap_deg: float = 0.0
-    start_deg: float = 0.0
+    ridge_deg: Arc
+    gap_deg: Turn = 0.0
+    start_deg: Angle = 0.0
     whole_cycles: bool = True
     fade_mm: tuple[float, float] = (0.5, 1.0)
-    middle: float = 1.0
+    middle: Share = 1.0
     distortion: TurnPeak | None = None
-    velocity_deg_s: float = 0.0
+    velocity_deg_s: Annotated[float, limits(-3600.0, 3600.0, "°/s")] = 0.0
     velocity_by: str = ""
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        check_point("center", self.center_mm)
-        check_range("ridge", self.ridge_deg, 0.5, 360.0, "°")
-        check_range("gap", self.gap_deg, 0.0, 360.0, "°")
-        check_angle("start", self.start_deg)
-        check_share("middle", self.middle)
-        check_range("velocity", self.velocity_deg_s, -3600.0, 3600.0, "°/s")
         if self.ridge_deg + self.gap_deg > 360.0:
             raise ValueError("ridge and gap are more than a turn together; make them smaller")
         inner_mm, outer_mm = self.fade_mm
@@ -305,9 +275,7 @@ class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
             raise ValueError("fade is from a smaller to a larger length, from 0 to 100 mm")
         if outer_mm - inner_mm < LEAST_APART_MM:
             raise ValueError("fade is from a length to the same; set the second larger")
-        check_velocity_by(self.velocity_by, bool(self.velocity_deg_s))
-        if self.distortion is not None and self.velocity_deg_s:
-            raise ValueError("velocity cannot be given beside a distortion; leave one out")
+        _check_distortion(self.distortion, self.velocity_deg_s)
 
     @property
     def wave(self) -> RidgeWave:
@@ -315,10 +283,6 @@ class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
         return RidgeWave(self.ridge_deg + self.gap_deg, self.velocity_deg_s, in_mm=False)
 
 
-def _check_grating(grating: LinearGrating | RadialGrating) -> None:
-    check_length("ridge", grating.ridge_mm)
-    check_length("gap", grating.gap_mm, 0.0)
-    check_range("velocity", grating.velocity_mm_s, -1000.0, 1000.0, " mm/s")
-    check_velocity_by(grating.velocity_by, bool(grating.velocity_mm_s))
-    if grating.distortion is not None and grating.velocity_mm_s:
+def _check_distortion(distortion: object, velocity: float) -> None:
+    if distortion is not None and velocity:
         raise ValueError("velocity cannot be given beside a distortion; leave one out")

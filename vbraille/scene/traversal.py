@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
+import operator
 from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
-from vbraille.scene.patterns import (
-    Circle,
-    Dots,
-    Group,
-    Image,
-    ImageDots,
-    Moving,
-    PathShape,
-    Polygon,
-    Shape,
-    Tile,
-)
+from vbraille.scene.pattern import Pattern
+from vbraille.scene.patterns import Fill, Tile
 from vbraille.scene.strokes import Vibration
 from vbraille.scene.textures import SignalLevel, UniformVibration
 
@@ -26,119 +17,19 @@ if TYPE_CHECKING:
 
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import AnyPattern
+    from vbraille.toml import Table
 
 
 # Keys, and indices of items, that lead from a pattern or a scene to a pattern in it.
 Steps = tuple[str | int, ...]
 
-
-def children(pattern: AnyPattern) -> tuple[AnyPattern, ...]:
-    """Patterns that stand directly in a pattern, in the order in which they are written."""
-    return tuple(part for _, part in placed_children(pattern))
-
-
-def placed_children(pattern: AnyPattern) -> list[tuple[Steps, AnyPattern]]:
-    """Patterns that stand directly in a pattern, with the keys that lead from it to each.
-
-    >>> from vbraille.scene.patterns import Tile
-    >>> from vbraille.scene.textures import Uniform
-    >>> [steps for steps, _ in placed_children(Tile(width_mm=5, height_mm=5, part=Uniform()))]
-    [('part',)]
-    """
-    if isinstance(pattern, Group):
-        parts: list[tuple[Steps, AnyPattern]] = [
-            (("parts", number), part) for number, part in enumerate(pattern.parts)
-        ]
-        return parts if pattern.by is None else [*parts, (("by",), pattern.by)]
-    if isinstance(pattern, Tile | Moving):
-        return [(("part",), pattern.part)]
-    if isinstance(pattern, Image):
-        return [] if pattern.texture is None else [(("texture",), pattern.texture)]
-    if isinstance(pattern, Circle | Polygon | PathShape) and pattern.fill is not None:
-        return [(("fill", "texture"), pattern.fill.texture)]
-    return []
-
-
-def each(*patterns: AnyPattern) -> Iterator[AnyPattern]:
-    """Patterns and all that stand in them, at any depth, each before what stands in it."""
-    left = list(reversed(patterns))
-    while left:
-        pattern = left.pop()
-        yield pattern
-        left += reversed(children(pattern))
-
-
-def vibrations(pattern: AnyPattern) -> list[Vibration]:
-    """Every vibration of a pattern and of what stands in it."""
-    return [
-        vibration
-        for part in each(pattern)
-        for vibration in (part.vibration, *drawn_vibrations(part))
-        if vibration is not None
-    ]
-
-
-def drawn_vibrations(pattern: AnyPattern) -> list[Vibration]:
-    """Vibrations of what a pattern draws itself, beside that of all of it."""
-    found: list[Vibration | None] = []
-    if isinstance(pattern, UniformVibration):
-        found.append(Vibration(frequency_hz=pattern.frequency_hz))
-    elif isinstance(pattern, Dots | ImageDots):
-        found.append(pattern.dot.vibration)
-    elif isinstance(pattern, Shape):
-        found += [pattern.stroke.vibration] if pattern.stroke else []
-        if pattern.dots is not None:
-            found += [pattern.dots.dot.vibration, pattern.dots.vertex_vibration]
-        if pattern.cue is not None:
-            found.append(pattern.cue.swing)
-        if isinstance(pattern, Polygon) and pattern.markers is not None:
-            found.append(pattern.markers.swing)
-    return [vibration for vibration in found if vibration is not None]
-
-
-def driving(*patterns: AnyPattern) -> list[str]:
-    """Names of the signals that are the speed of a motion in patterns and what stands in them."""
-    return [
-        name
-        for part in each(*patterns)
-        for key, name in signals_of(part)
-        if key[-1] == "velocity_by"
-    ]
-
-
-def signals_of(pattern: AnyPattern) -> list[tuple[Steps, str]]:
-    """Names of the signals that a pattern itself uses, with the keys that lead to each."""
-    found: list[tuple[Steps, str]] = [(("factor",), pattern.factor)]
-    if isinstance(pattern, SignalLevel):
-        found.append((("name",), pattern.name))
-    elif isinstance(pattern, Shape):
-        if pattern.stroke is not None and pattern.stroke.along is not None:
-            found.append((("stroke", "along", "velocity_by"), pattern.stroke.along.velocity_by))
-        if pattern.dots is not None:
-            found.append((("dots", "velocity_by"), pattern.dots.velocity_by))
-        if pattern.cue is not None:
-            found.append((("cue", "velocity_by"), pattern.cue.velocity_by))
-    else:
-        found.append((("velocity_by",), getattr(pattern, "velocity_by", "")))
-    return [(steps, name) for steps, name in found if name]
-
-
-def with_name(pattern: AnyPattern, steps: Steps, name: str) -> AnyPattern:
-    """Pattern with another name of a signal where `signals_of` found one."""
-    values: list[Any] = [pattern]
-    for key in steps[:-1]:
-        values.append(getattr(values[-1], str(key)))
-    made: Any = name
-    for value, key in zip(reversed(values), reversed(steps), strict=True):
-        made = replace(value, **{str(key): made})
-    return made
-
-
-def with_signals(pattern: AnyPattern, names: Mapping[str, str]) -> AnyPattern:
-    """Pattern that uses signals under other names, as does all that stands in it."""
-    for steps, name in signals_of(pattern):
-        pattern = with_name(pattern, steps, names[name])
-    return with_children(pattern, lambda _, part: with_signals(part, names))
+# Keys of patterns under which others stand, keys of what a pattern draws with, keys of a name of a
+# signal, and keys of places, of several places, and of lists of them.
+_INNER = ("parts", "by", "part", "texture", "fill")
+_DRAWN = ("stroke", "along", "dots", "dot", "cue", "markers")
+_DRIVEN = ("factor", "velocity_by")
+ONE = ("start_mm", "end_mm", "center_mm", "origin_mm", "place_mm", "move_mm", "array_at_mm")
+SEVERAL = ("vertices_mm", "centers_mm", "contours_mm")
 
 
 def with_children(
@@ -154,33 +45,124 @@ def with_children(
         Function that is given the keys that lead to an inner pattern, and that pattern, and gives
         what is to stand there.
     """
-    changed = {steps: change(steps, part) for steps, part in placed_children(pattern)}
-    if all(changed[steps] is part for steps, part in placed_children(pattern)):
-        return pattern
-    if isinstance(pattern, Group):
-        parts = tuple(changed["parts", number] for number in range(len(pattern.parts)))
-        return replace(pattern, parts=parts, by=changed.get(("by",)))
-    if isinstance(pattern, Tile | Moving):
-        return replace(pattern, part=changed["part",])
-    if isinstance(pattern, Image):
-        return replace(pattern, texture=changed["texture",])
-    assert isinstance(pattern, Circle | Polygon | PathShape)
-    assert pattern.fill is not None
-    return replace(pattern, fill=replace(pattern.fill, texture=changed["fill", "texture"]))
+
+    def changed(value: Any, steps: Steps) -> Any:
+        if isinstance(value, Pattern):
+            return change(steps, value)  # pyright: ignore[reportArgumentType]
+        if isinstance(value, Fill):
+            texture = change((*steps, "texture"), value.texture)
+            return value if texture is value.texture else replace(value, texture=texture)
+        if isinstance(value, tuple):
+            items = tuple(changed(item, (*steps, number)) for number, item in enumerate(value))
+            return value if all(map(operator.is_, items, value)) else items
+        return value
+
+    changes: dict[str, Any] = {}
+    for key in _INNER:
+        value = getattr(pattern, key, None)
+        new = changed(value, (key,))
+        if new is not value:
+            changes[key] = new
+    return replace(pattern, **changes) if changes else pattern
 
 
-# The fields of patterns that are a place, places, and lists of places.
-ONE = (
-    "start_mm",
-    "end_mm",
-    "center_mm",
-    "origin_mm",
-    "place_mm",
-    "move_mm",
-    "array_at_mm",
-)
-SEVERAL = ("vertices_mm", "centers_mm")
-LISTS = ("contours_mm",)
+def placed_children(pattern: AnyPattern) -> list[tuple[Steps, AnyPattern]]:
+    """Patterns that stand directly in a pattern, with the keys that lead from it to each.
+
+    >>> from vbraille.scene.patterns import Tile
+    >>> from vbraille.scene.textures import Uniform
+    >>> [steps for steps, _ in placed_children(Tile(width_mm=5, height_mm=5, part=Uniform()))]
+    [('part',)]
+    """
+    found: list[tuple[Steps, AnyPattern]] = []
+
+    def note(steps: Steps, part: AnyPattern) -> AnyPattern:
+        found.append((steps, part))
+        return part
+
+    with_children(pattern, note)
+    return found
+
+
+def children(pattern: AnyPattern) -> list[AnyPattern]:
+    """Patterns that stand directly in a pattern, in the order in which they are written."""
+    return [part for _, part in placed_children(pattern)]
+
+
+def mapped(pattern: AnyPattern, change: Callable[[AnyPattern], AnyPattern]) -> AnyPattern:
+    """Pattern in which it and all that stands in it is what a function makes of it."""
+    return with_children(change(pattern), lambda _, part: mapped(part, change))
+
+
+def each(*patterns: AnyPattern) -> Iterator[AnyPattern]:
+    """Patterns and all that stand in them, at any depth, each before what stands in it."""
+    left = list(reversed(patterns))
+    while left:
+        pattern = left.pop()
+        yield pattern
+        left += reversed(children(pattern))
+
+
+def drawn_with(table: Table, steps: Steps = ()) -> Iterator[tuple[Steps, Table]]:
+    """A pattern and the tables of what it draws itself: its stroke, dots, cue and the like."""
+    yield steps, table
+    for key in _DRAWN:
+        inner = getattr(table, key, None)
+        if inner is not None:
+            yield from drawn_with(inner, (*steps, key))
+
+
+def drawn_vibrations(pattern: AnyPattern) -> list[Vibration]:
+    """Vibrations of what a pattern draws itself, beside that of all of it."""
+    found: list[Vibration | None] = []
+    if isinstance(pattern, UniformVibration):
+        found.append(Vibration(frequency_hz=pattern.frequency_hz))
+    for steps, table in drawn_with(pattern):
+        if steps:
+            found.append(getattr(table, "swing" if hasattr(table, "swing") else "vibration", None))
+            found.append(getattr(table, "vertex_vibration", None))
+    return [vibration for vibration in found if vibration is not None]
+
+
+def vibrations(pattern: AnyPattern) -> list[Vibration]:
+    """Every vibration of a pattern and of what stands in it."""
+    found = ((part.vibration, *drawn_vibrations(part)) for part in each(pattern))
+    return [vibration for some in found for vibration in some if vibration is not None]
+
+
+def signals_of(pattern: AnyPattern) -> list[tuple[Steps, str]]:
+    """Names of the signals that a pattern itself uses, with the keys that lead to each."""
+    return [
+        ((*steps, key), name)
+        for steps, table in drawn_with(pattern)
+        for key, name in _driven(table).items()
+    ]
+
+
+def _driven(table: Table) -> dict[str, str]:
+    """Names of the signals that a table itself uses, by their keys."""
+    keys = ("name", *_DRIVEN) if isinstance(table, SignalLevel) else _DRIVEN
+    return {key: name for key in keys if (name := getattr(table, key, ""))}
+
+
+def driving(*patterns: AnyPattern) -> list[str]:
+    """Names of the signals that are the speed of a motion in patterns and what stands in them."""
+    used = (one for part in each(*patterns) for one in signals_of(part))
+    return [name for steps, name in used if steps[-1] == "velocity_by"]
+
+
+def with_signals(pattern: AnyPattern, names: Mapping[str, str]) -> AnyPattern:
+    """Pattern that uses signals under other names, as does all that stands in it."""
+
+    def renamed(table: Any) -> Any:
+        changes: dict[str, Any] = {key: names[name] for key, name in _driven(table).items()}
+        for key in _DRAWN:
+            inner = getattr(table, key, None)
+            if inner is not None:
+                changes[key] = renamed(inner)
+        return replace(table, **changes)
+
+    return with_children(renamed(pattern), lambda _, part: with_signals(part, names))
 
 
 def moved(pattern: AnyPattern, move_mm: Point) -> AnyPattern:
@@ -214,15 +196,23 @@ def moved(pattern: AnyPattern, move_mm: Point) -> AnyPattern:
 
 def placed(pattern: AnyPattern, place: Callable[[float, float], Point]) -> dict[str, Any]:
     """Fields of a pattern that are places, each where a function has it."""
-    found: dict[str, Any] = {}
-    for name in pattern.__struct_fields__:
-        value = getattr(pattern, name)
-        if value is None:
-            continue
-        if name in ONE:
-            found[name] = place(*value)
-        elif name in SEVERAL:
-            found[name] = tuple(place(x, y) for x, y in value)
-        elif name in LISTS:
-            found[name] = tuple(tuple(place(x, y) for x, y in one) for one in value)
+
+    def at(value: Any) -> Any:
+        if isinstance(value[0], tuple):
+            return tuple(map(at, value))
+        return place(*value)
+
+    places = {key: getattr(pattern, key, None) for key in (*ONE, *SEVERAL)}
+    return {key: at(value) for key, value in places.items() if value is not None}
+
+
+def points_of(pattern: AnyPattern) -> list[Point]:
+    """The places that a pattern has itself."""
+    found: list[Point] = []
+
+    def note(x_mm: float, y_mm: float) -> Point:
+        found.append((x_mm, y_mm))
+        return x_mm, y_mm
+
+    placed(pattern, note)
     return found

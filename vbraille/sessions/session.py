@@ -5,13 +5,12 @@ from __future__ import annotations
 import secrets
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack, closing
-from dataclasses import asdict
 from datetime import UTC, datetime
 from importlib.metadata import version
 from itertools import count
 from pathlib import Path
 from platform import python_version
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from msgspec import Meta, Struct, ValidationError, convert, structs
 
@@ -29,10 +28,6 @@ from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.sessions.running.answers import Answers
-    from vbraille.sessions.running.device import MakeEngine, SessionDevice
-    from vbraille.sessions.running.liveview import SessionView
-    from vbraille.sessions.running.markers import Markers
-    from vbraille.sessions.running.paper import Paper, Pins
 
 Say = Callable[[str], None]
 _MOST_DRAWN = 1_000_000  # a seed that is drawn is short enough to be written down by hand
@@ -198,7 +193,6 @@ class Session:
         answers: Any = None,
         *,
         say: Say = _nothing,
-        make_engine: MakeEngine | None = None,
         monitor: tuple[str | None, int | None] | None = None,
         before_rest: Callable[[], None] = _nothing,
         **changed: Any,
@@ -212,8 +206,6 @@ class Session:
             function that returns the line for a trial; by default that of the last run.
         say
             Function that is called with each sentence for the experimenter.
-        make_engine
-            Function that makes another engine than the usual one.
         monitor
             Host and port of a live view; None for no live view.
         before_rest
@@ -243,12 +235,11 @@ class Session:
             conditions = structs.replace(conditions, answers=source.name)
             if progress.runs:
                 say(f"resume: device {conditions.device}, answers {conditions.answers}")
-                _say_clock(content, say)
+                if datetime.fromisoformat(content.events[-1].wall) > datetime.now(UTC):
+                    back = "times of day go back in the record, t_s does not"
+                    say(f"clock: set back since the last run; {back}")
             with ExitStack() as stack:
-                apparatus = _open_apparatus(
-                    stack, progress, conditions, source, say, make_engine, monitor, before_rest
-                )
-                _run(opened, progress, source, conditions, apparatus, before_rest)
+                _run(stack, opened, progress, conditions, source, say, monitor, before_rest)
             say(f"record: {opened.sum.hex()}")
         return self
 
@@ -339,17 +330,6 @@ def check_fields(protocol: Protocol, given: Mapping[str, str]) -> dict[str, str]
     return {name: given.get(name, "") for name in known}
 
 
-class _Apparatus(NamedTuple):
-    """Parts of a run beside its record: all is open, and closed by the stack that opened it."""
-
-    device: SessionDevice | Paper
-    pins: Pins | None
-    view: SessionView | None
-    markers: Markers
-    play: Callable[[Any], None]
-    say: Say
-
-
 def _conditions_now(content: Content, changed: Mapping[str, Any]) -> Conditions:
     """Return the conditions of the last run, with changes."""
     runs = [e.data["conditions"] for e in content.events if "conditions" in e.data]
@@ -383,49 +363,52 @@ def _open_answers(given: Any, conditions: Conditions, progress: Progress) -> Ans
     return source
 
 
-def _open_apparatus(
+def _run(
     stack: ExitStack,
+    opened: Record,
     progress: Progress,
     conditions: Conditions,
     source: Answers,
     say: Say,
-    make_engine: MakeEngine | None,
     monitor: tuple[str | None, int | None] | None,
     before_rest: Callable[[], None],
-) -> _Apparatus:
-    """Open the device and all that stands beside it."""
+) -> None:
+    """Open the device and all that stands beside it, run a session, and close the device."""
     # Imported here: compiled code takes long to load, and not every use of a session needs it.
     from vbraille.sessions.running.device import SessionDevice, check_room
     from vbraille.sessions.running.markers import Markers
-    from vbraille.sessions.running.paper import Paper, Pins
+    from vbraille.sessions.running.pins import Pins
+    from vbraille.sessions.running.presenter import Presenter
+    from vbraille.sessions.running.reader import random_of
+    from vbraille.sessions.running.runner import Runner
 
     protocol, plan = progress.protocol, progress.plan
     markers = Markers(conditions.markers, protocol.marker_codes, say)
     stack.callback(markers.close)
-    view = None
+    told: dict[str, Any] = {"conditions": structs.asdict(conditions), "versions": _versions()}
+    view = pins = None
     if monitor is not None:
         from vbraille.sessions.running.liveview import SessionView
 
         view = stack.enter_context(SessionView(protocol, *monitor, fast=conditions.fast, say=say))
-        say = view.say
-    pins = None
+        say, told["monitor"] = view.say, view.described
     if protocol.needs_pins and not source.felt and not conditions.fast:
         pins = Pins(protocol, plan, conditions.also)
         stack.callback(pins.close)
-    device: SessionDevice | Paper = Paper()
+    device = Presenter()
     if protocol.medium == "device":
+        # The simulated hand differs between participants and runs.
+        drawn = f"{protocol.name} {plan.participant} {plan.seed} hand {progress.runs}"
         device = SessionDevice(
             protocol,
-            plan,
             conditions.device,
             conditions.hand,
-            seed=_hand_seed(progress),
+            seed=int(random_of(drawn).integers(2**63)),
             fast=conditions.fast,
             rate_hz=conditions.rate_hz,
             line=progress.line,
             keeps=source.felt,
             by_hand=not source.typed or protocol.trial.end is None,
-            make_engine=make_engine,
             watched=None if view is None else view.watch,
         )
     stack.callback(device.close)
@@ -435,62 +418,26 @@ def _open_apparatus(
         check_room(protocol, plan, device.display)
     if pins is not None:
         pins.start()
-    play = _open_sound(conditions.sound, source, say)
-    return _Apparatus(device, pins, view, markers, play, say)
-
-
-def _run(
-    opened: Record,
-    progress: Progress,
-    source: Answers,
-    conditions: Conditions,
-    apparatus: _Apparatus,
-    before_rest: Callable[[], None],
-) -> None:
-    """Run a session, close its device, and write what went wrong with that."""
-    from vbraille.sessions.running.commands import COMMANDS
-    from vbraille.sessions.running.device import SessionDevice
-    from vbraille.sessions.running.runner import Runner
-
-    device, pins, view, markers, play, say = apparatus
+    if source.felt and protocol.shows_pictures and conditions.hand == "slow":
+        hint = f"{setting('hand')} sweep:150 does"
+        say(f"hand: a slow one comes to few pictures in their time; {hint}")
     runner = Runner(
         opened,
         progress,
         source,
         device,
-        commands=COMMANDS,
-        pins=pins,
+        pins,
         real=not conditions.fast,
         say=say,
-        play=play,
+        play=_open_sound(conditions.sound, source, say),
         mark=markers.mark,
         look=_nothing if view is None else view.look,
     )
-    told: dict[str, Any] = {"conditions": structs.asdict(conditions), "versions": _versions()}
-    if isinstance(device, SessionDevice):
-        told |= {
-            "display": asdict(device.display),
-            "calibration": device.engine.calibration,
-            "simulated": is_simulated(conditions.device),
-        }
-    if view is not None:
-        told["monitor"] = view.described
     over = runner.run(**told)
     before_rest()
-    device.close()
-    if isinstance(device, SessionDevice):
-        counts = {name: number for name, number in device.engine.counts.items() if number}
-        runner.log("closed", lost=device.engine.lost, counts=counts)
+    if closed := device.close():
+        runner.log("closed", **closed)
     runner.finish(over)
-
-
-def _hand_seed(progress: Progress) -> int:
-    """Return the seed of the simulated hand, which differs between participants and runs."""
-    from vbraille.sessions.running.reader import random_of
-
-    plan = progress.plan
-    drawn = f"{progress.protocol.name} {plan.participant} {plan.seed} hand {progress.runs}"
-    return int(random_of(drawn).integers(2**63))
 
 
 def _open_sound(wanted: str, source: Answers, say: Say) -> Callable[[Any], None]:
@@ -513,12 +460,6 @@ def _open_sound(wanted: str, source: Answers, say: Say) -> Callable[[Any], None]
                 raise InputError(f"{error}; give {setting('cues')} bell or none") from None
         say("sound: the terminal's bell, since there is no audio output")
     return Bell().play
-
-
-def _say_clock(content: Content, say: Say) -> None:
-    """Say if the time of day has gone back since the last event."""
-    if content.events and datetime.fromisoformat(content.events[-1].wall) > datetime.now(UTC):
-        say("clock: set back since the last run; times of day go back in the record, t_s does not")
 
 
 def _versions() -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""Motions of a finger along a line, and from line to line: sweeping, or reading as people do.
+"""Hands that move along a line, and from line to line: sweeping, still, or as people read.
 
 A made-up hand says by where it goes that it is done with a line: it touches
 the end once, as the last thing before it returns to the start. Reading again,
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-
 # All ours. A finger drifts by less than what would bring the next line under the array's centre:
 # half a pitch, or three quarters of it with a hysteresis of a quarter.
 DRIFT_PITCHES = 0.15
@@ -30,6 +29,17 @@ _PERIODS_S = (3.0, 9.0)
 _SHARES = (0.5, 0.3, 0.2)  # shares of the waves that make up a drift; their sum is 1
 FOOT_S = 0.8  # how long a hand stays below a page, which is longer than the program waits for
 _KNOTS_S = 0.02  # time between knots, short enough that straight lines between them look smooth
+EMPTY_LINE_S = 0.25
+STILL_S = 1e9  # which no reading lasts
+# Unless it is done, a hand comes no nearer to the start once it has left it, and turns no nearer to
+# the end. More than 1 mm, since the program takes "reached the end, then within 1 mm of the
+# start" for the end of a line: this is what tells reading again from being done.
+CLEAR_MM = 1.25
+TURN_SHORT = (0.01, 0.10)  # passes but the last turn round at 90 to 99 % of the way
+SLOW_BACK_CHANCE = 0.3  # of feeling the line on the way back too, before reading it again
+LEAST_REREAD_MM = CLEAR_MM / TURN_SHORT[1]  # on a shorter line there is no room: one pass
+LEAST_MOVE_MM = 0.05  # a shorter rest of a way is gone in the same movement
+RESCANS_MM = (11.0, 22.0)  # a cell or two of both devices (10.48 and 11.1 mm)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +56,6 @@ class Area:
         Places where the array begins and ends each line, along x as in `Motion`.
     foot_mm
         How far below the last line a hand goes at the end, and stays there; 0 if it does not.
-
-    Raises
-    ------
-    ValueError
-        If there is no line, or the pitch is not above 0.
     """
 
     lines: int
@@ -58,12 +63,6 @@ class Area:
     start_mm: float
     end_mm: float
     foot_mm: float = 0.0
-
-    def __post_init__(self) -> None:
-        if self.lines < 1:
-            raise ValueError(f"a page has {self.lines} lines; it must have 1 or more")
-        if not 0 < self.pitch_mm < math.inf:
-            raise ValueError(f"line pitch is {self.pitch_mm:g} mm; it must be above 0")
 
     def middle_mm(self, line: int) -> float:
         """Place of the middle of a line along y."""
@@ -85,68 +84,15 @@ def area_on(height_mm: float, lines: int, pitch_mm: float, start_mm: float, end_
     return Area(lines, pitch_mm, start_mm, end_mm, foot_mm)
 
 
-class Drift:
-    """Drift of a hand off a line and of its angle, slowly and within bounds.
-
-    Parameters
-    ----------
-    random
-        Generator that draws the drift; each drift is a different one.
-    pitches, tilt_rad
-        How far the hand goes at most, in line pitches, and how far it turns.
-    """
-
-    def __init__(
-        self,
-        random: np.random.Generator,
-        pitches: float = DRIFT_PITCHES,
-        tilt_rad: float = TILT_RAD,
-    ) -> None:
-        self._pitches = pitches
-        self._tilt_rad = tilt_rad
-        self._waves = [self._draw(random) for _ in range(2)]
-
-    def y_pitches(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Tell how far below the middle of the line the hand is at some times, in line pitches.
-
-        Values are within the bounds that were given.
-        """
-        return self._pitches * self._wave(0, t_s)
-
-    def theta_rad(self, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Tell how far the hand is turned at some times, within the bound that was given."""
-        return self._tilt_rad * self._wave(1, t_s)
-
-    @staticmethod
-    def _draw(random: np.random.Generator) -> list[tuple[float, float, float]]:
-        return [
-            (share, random.uniform(*_PERIODS_S), random.uniform(0, 2 * math.pi))
-            for share in _SHARES
-        ]
-
-    def _wave(self, number: int, t_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        total = np.zeros(t_s.size)
-        for share, period_s, phase in self._waves[number]:
-            total += share * np.sin(2 * math.pi * t_s / period_s + phase)
-        return total
-
-
-def read_lines(
-    read_line: Callable[[float, float], Motion], area: Area, drift: Drift | None = None
-) -> Motion:
-    """Motion over a page: along each line and back as on a single line, then down to the next.
-
-    If the area has a foot the hand ends there.
+def read_lines(read_line: Callable[[float, float], Motion], area: Area) -> Motion:
+    """Return a motion over a page: along each line and back, down to the next, then to the foot.
 
     Parameters
     ----------
     read_line
-        Function that gives the motion along the next line and back, as in
-        `vbraille.simulation.hand.Hand`.
+        Function that gives the motion along the next line and back, as in `Hand`.
     area
         Area that the lines take.
-    drift
-        How the hand wanders off the lines; None if it keeps to the middle of each.
     """
     times_s, places_mm, middles_mm = [], [], []
     begun_s = 0.0
@@ -156,31 +102,29 @@ def read_lines(
         places_mm.append(motion.x_mm)
         middles_mm.append(np.full(motion.t_s.size, area.middle_mm(line)))
         begun_s += motion.duration_s + area.pitch_mm / RETURN_MM_S
-    last_s = times_s[-1][-1]
     if area.foot_mm:
-        down_s = last_s + (area.pitch_mm / 2 + area.foot_mm) / RETURN_MM_S
+        down_s = times_s[-1][-1] + (area.pitch_mm / 2 + area.foot_mm) / RETURN_MM_S
         times_s.append(np.array([down_s, down_s + FOOT_S]))
         places_mm.append(np.full(2, area.start_mm))
         middles_mm.append(np.full(2, area.height_mm + area.foot_mm))
-    t_s, x_mm, y_mm = map(np.concatenate, (times_s, places_mm, middles_mm))
-    if drift is None:
-        return Motion(t_s, x_mm, y_mm)
-    fine_s = np.union1d(t_s, np.arange(0.0, t_s[-1], _KNOTS_S))
-    strayed_mm = area.pitch_mm * drift.y_pitches(fine_s)
-    y_mm = np.interp(fine_s, t_s, y_mm) + np.where(fine_s > last_s, 0.0, strayed_mm)
-    return Motion(fine_s, np.interp(fine_s, t_s, x_mm), y_mm, drift.theta_rad(fine_s))
+    return Motion(*map(np.concatenate, (times_s, places_mm, middles_mm)))
 
 
-EMPTY_LINE_S = 0.25
-STILL_S = 1e9  # which no reading lasts
-# Unless it is done, a hand comes no nearer to the start once it has left it, and turns no nearer to
-# the end. More than 1 mm, since the program takes "reached the end, then within 1 mm of the
-# start" for the end of a line: this is what tells reading again from being done.
-CLEAR_MM = 1.25
-TURN_SHORT = (0.01, 0.10)  # passes but the last turn round at 90 to 99 % of the way
-SLOW_BACK_CHANCE = 0.3  # of feeling the line on the way back too, before reading it again
-LEAST_REREAD_MM = CLEAR_MM / TURN_SHORT[1]  # on a shorter line there is no room: one pass
-LEAST_MOVE_MM = 0.05  # a shorter rest of a way is gone in the same movement
+def drifting(
+    motion: Motion, random: np.random.Generator, most_mm: float, tilt_rad: float
+) -> Motion:
+    """Return a motion over a page that drifts along y and turns, slowly and within two bounds."""
+    assert motion.y_mm is not None, "a page has lines"
+    t_s = np.union1d(motion.t_s, np.arange(0.0, motion.duration_s, _KNOTS_S))
+    x_mm, y_mm = (np.interp(t_s, motion.t_s, way) for way in (motion.x_mm, motion.y_mm))
+    strayed_mm, theta_rad = most_mm * _wave(t_s, random), tilt_rad * _wave(t_s, random)
+    return Motion(t_s, x_mm, y_mm + strayed_mm, theta_rad)
+
+
+def _wave(t_s: NDArray[np.float64], random: np.random.Generator) -> NDArray[np.float64]:
+    """Return a slow wave between -1 and 1, drawn at random."""
+    periods_s, phases = (random.uniform(*ends, len(_SHARES)) for ends in (_PERIODS_S, (0, 1)))
+    return np.sin(2 * math.pi * (t_s[:, None] / periods_s + phases)) @ _SHARES
 
 
 class Hand(Protocol):
@@ -211,7 +155,7 @@ class Hand(Protocol):
 
 
 def along(start_mm: float, end_mm: float) -> Way:
-    """A way that begins at the start of a line, after a check of the line's places."""
+    """Return a way that begins at the start of a line, after a check of the line's places."""
     if not -MOST_MM <= start_mm <= end_mm <= MOST_MM:
         raise ValueError(
             f"a line is from {start_mm:g} to {end_mm:g} mm; "
@@ -241,7 +185,7 @@ class Sweep:
         check_range("sweep speed", self.speed_mm_s, *SPEED_BOUNDS_MM_S, " mm/s")
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
-        """Motion along the next line; see `Hand`."""
+        """Return the motion along the next line; see `Hand`."""
         way = along(start_mm, end_mm)
         if start_mm == end_mm:
             way.wait(EMPTY_LINE_S)
@@ -250,7 +194,7 @@ class Sweep:
         return way.motion()
 
     def read_page(self, area: Area) -> Motion:
-        """Motion over all lines of a page, each along its middle; see `Hand`."""
+        """Return the motion over all lines of a page, each along its middle; see `Hand`."""
         return read_lines(self.read_line, area)
 
 
@@ -258,13 +202,13 @@ class Still:
     """A hand that stays where it is, until a person moves it in the live view."""
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
-        """Motion that stays at the start of a line; see `Hand`."""
+        """Return a motion that stays at the start of a line; see `Hand`."""
         way = along(start_mm, end_mm)
         way.wait(STILL_S)
         return way.motion()
 
     def read_page(self, area: Area) -> Motion:
-        """Motion that stays at the start of a page; see `Hand`."""
+        """Return a motion that stays at the start of a page; see `Hand`."""
         return self.read_line(area.start_mm, area.start_mm)
 
 
@@ -285,64 +229,37 @@ class Habits:
         Slowest and fastest speed of any movement but a quick return.
     movement_s
         Duration of a movement.
-    pause_chance, pause_s
-        Chance of standing still, and for how long.
-    regression_chance, regression_mm
-        Chance of a step back, and its length.
-    rescan_chance, rescan_mm
-        Chance of going back to feel one cell or two again, and the way for each of them.
+    pause_s
+        Duration of standing still, at the end of a pass or elsewhere.
+    chance
+        Chance of standing still, and that of a step back of 2 to 10 mm.
+    rescan_chance
+        Chance of going back by `RESCANS_MM`, to feel one cell or two again.
     passes
         Number of times that a line is read.
-
-    Raises
-    ------
-    ValueError
-        If a value is out of range, or steps back take up half of the way.
     """
 
     speed_mm_s: float
     spread: float
     speed_bounds_mm_s: tuple[float, float]
     movement_s: tuple[float, float]
-    pause_chance: float
     pause_s: tuple[float, float]
-    regression_chance: float
-    regression_mm: tuple[float, float]
+    chance: float
     rescan_chance: float = 0.0
-    rescan_mm: tuple[float, float] = (11.0, 22.0)
     passes: tuple[int, int] = (1, 1)
 
-    def __post_init__(self) -> None:
-        pairs = ("movement_s", "pause_s", "regression_mm", "rescan_mm", "passes")
-        for name in ("speed_bounds_mm_s", *pairs):
-            low, high = getattr(self, name)
-            if not 0 < low <= high < math.inf:
-                raise ValueError(f"{name} is {low:g} to {high:g}; it must be above 0, and in order")
-        check_range("speed_mm_s", self.speed_mm_s, *self.speed_bounds_mm_s)
-        for name in ("spread", "pause_chance", "regression_chance", "rescan_chance"):
-            check_range(name, getattr(self, name), 0, 1)
-        forth_mm = self.speed_mm_s * sum(self.movement_s) / 2
-        back_mm = self.regression_chance * sum(self.regression_mm) / 2
-        back_mm += self.rescan_chance * sum(self.rescan_mm) / 2
-        if back_mm > forth_mm / 2:
-            raise ValueError(
-                f"steps back are {back_mm:g} mm a movement; "
-                f"they must be at most {forth_mm / 2:g} mm, half of the movement"
-            )
 
-
+REGRESSION_MM = (2.0, 10.0)
 # All numbers are ours. 8 mm/s is chosen after Lévesque 2009, ch. 4 (12 s for a string of 55.5 mm:
 # some 5 mm/s net, the string read again and again), 24 to 69 mm/s after common measurements of
-# fluent reading on paper; 11 mm is about a cell of both devices (10.48 and 11.1 mm).
+# fluent reading on paper.
 DEVICE = Habits(
     speed_mm_s=8.0,
     spread=0.3,
     speed_bounds_mm_s=(3.0, 21.0),
     movement_s=(0.15, 0.5),
-    pause_chance=0.02,
     pause_s=(0.2, 0.8),
-    regression_chance=0.02,
-    regression_mm=(2.0, 10.0),
+    chance=0.02,
     rescan_chance=0.01,
     passes=(2, 3),
 )
@@ -351,10 +268,8 @@ FLUENT = Habits(
     spread=0.25,
     speed_bounds_mm_s=(24.0, 69.0),
     movement_s=(0.1, 0.3),
-    pause_chance=0.03,
     pause_s=(0.1, 0.3),
-    regression_chance=0.03,
-    regression_mm=(2.0, 10.0),
+    chance=0.03,
 )
 
 
@@ -370,14 +285,13 @@ class HumanHand:
     """
 
     def __init__(self, habits: Habits, seed: int = 1) -> None:
-        if seed < 0:
-            raise ValueError(f"seed is {seed}; it must be 0 or more")
+        check_range("seed", seed, 0, math.inf)
         self.habits = habits
         self._random = np.random.default_rng(seed)
         self._drifting = np.random.default_rng((seed, 1))  # lines are read alike on any carriage
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
-        """Motion along the next line; see `Hand`. Each call draws another one."""
+        """Return the motion along the next line; see `Hand`. Each call draws another one."""
         way = along(start_mm, end_mm)
         length_mm, passes = end_mm - start_mm, 1
         if length_mm >= LEAST_REREAD_MM:
@@ -385,37 +299,37 @@ class HumanHand:
         for _ in range(passes - 1):
             short_mm = length_mm * self._random.uniform(*TURN_SHORT)
             self._read(way, start_mm, end_mm - max(short_mm, CLEAR_MM))
-            self._pause(way)
             back_mm = start_mm + CLEAR_MM * self._random.uniform(1, 2)
             if self._random.random() < SLOW_BACK_CHANCE:
                 self._go(way, back_mm)
             else:
                 way.move(back_mm, RETURN_MM_S)
         self._read(way, start_mm, end_mm)
-        self._pause(way)
         way.move(start_mm, RETURN_MM_S)
         return way.motion()
 
     def read_page(self, area: Area) -> Motion:
-        """Motion over all lines of a page, drifting a little off each. Each call draws another."""
-        return read_lines(self.read_line, area, Drift(self._drifting))
+        """Return a motion over all lines of a page, drifting a little off each; see `Hand`."""
+        most_mm = DRIFT_PITCHES * area.pitch_mm
+        return drifting(read_lines(self.read_line, area), self._drifting, most_mm, TILT_RAD)
 
     def _read(self, way: Way, start_mm: float, to_mm: float) -> None:
-        """Make one pass to the right, with steps back, pauses and what else holds it up."""
+        """Make one pass to the right, with steps back and pauses, and pause at its end."""
         habits = self.habits
         self._step(way, to_mm)
         while way.x_mm < to_mm:
-            drawn = self._random.random(3)
-            if drawn[0] < habits.pause_chance:
+            paused, stepped, rescanned = self._random.random(3)
+            if paused < habits.chance:
                 self._pause(way)
             back_mm = 0.0
-            if drawn[1] < habits.regression_chance:
-                back_mm = self._random.uniform(*habits.regression_mm)
-            elif drawn[2] < habits.rescan_chance:
-                back_mm = float(self._random.choice(habits.rescan_mm))
+            if stepped < habits.chance:
+                back_mm = self._random.uniform(*REGRESSION_MM)
+            elif rescanned < habits.rescan_chance:
+                back_mm = float(self._random.choice(RESCANS_MM))
             if way.x_mm - back_mm >= start_mm + CLEAR_MM:
                 self._go(way, way.x_mm - back_mm)
             self._step(way, to_mm)
+        self._pause(way)
 
     def _go(self, way: Way, to_mm: float) -> None:
         while way.x_mm != to_mm:
@@ -430,9 +344,8 @@ class HumanHand:
         step_mm = speed_mm_s * self._random.uniform(*habits.movement_s)
         ahead_mm = to_mm - way.x_mm
         if abs(ahead_mm) - step_mm >= LEAST_MOVE_MM:
-            way.move(way.x_mm + math.copysign(step_mm, ahead_mm), speed_mm_s)
-        else:
-            way.move(to_mm, speed_mm_s)
+            to_mm = way.x_mm + math.copysign(step_mm, ahead_mm)
+        way.move(to_mm, speed_mm_s)
 
     def _pause(self, way: Way) -> None:
         way.wait(self._random.uniform(*self.habits.pause_s))

@@ -1,10 +1,10 @@
-"""Motions: times and places, made step by step."""
+"""Motions: times and places, made step by step, and a hand that goes from one to the next."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -45,8 +45,7 @@ class Motion:
     Raises
     ------
     ValueError
-        If the arrays differ in length, a value is not finite, or time does not begin at 0 and
-        increase.
+        If time does not begin at 0 and increase.
     """
 
     t_s: NDArray[np.float64]
@@ -55,25 +54,8 @@ class Motion:
     theta_rad: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
-        if self.t_s.ndim != 1 or self.t_s.shape != self.x_mm.shape or self.t_s.size < 2:
-            raise ValueError(
-                f"times and positions have shapes {self.t_s.shape} and {self.x_mm.shape}; "
-                f"they must be as many, 2 or more"
-            )
-        for name in ("y_mm", "theta_rad"):
-            values = getattr(self, name)
-            if values is not None and values.shape != self.t_s.shape:
-                raise ValueError(
-                    f"{name} has shape {values.shape} and times have {self.t_s.shape}; "
-                    f"they must be as many"
-                )
-        given = (self.t_s, self.x_mm, self.y_mm, self.theta_rad)
-        if not all(np.isfinite(values).all() for values in given if values is not None):
-            raise ValueError("a time or a position is not finite; they must be numbers")
-        if self.t_s[0] != 0:
-            raise ValueError(f"time begins at {self.t_s[0]:g} s; it must begin at 0")
-        if not (np.diff(self.t_s) > 0).all():
-            raise ValueError("time does not increase; each knot must be later than the one before")
+        if self.t_s.size < 2 or self.t_s[0] != 0 or not (np.diff(self.t_s) > 0).all():
+            raise ValueError("times of a motion must begin at 0 and increase; give 2 or more")
 
     @property
     def duration_s(self) -> float:
@@ -87,22 +69,16 @@ class Motion:
 
 
 class Way:
-    """A motion in the making.
+    """A motion along x in the making.
 
     Parameters
     ----------
     x_mm
-        Place where the way begins.
-
-    Attributes
-    ----------
-    x_mm : float
-        Place that the way has come to.
+        Place where the way begins; later the place that it has come to.
     """
 
     def __init__(self, x_mm: float) -> None:
         self.x_mm = x_mm
-        self._t_s = 0.0
         self._knots = [(0.0, x_mm)]
 
     def move(self, to_mm: float, speed_mm_s: float) -> None:
@@ -114,11 +90,11 @@ class Way:
 
     def wait(self, duration_s: float) -> None:
         """Stay in the same place for some time."""
-        self._t_s += max(duration_s, LEAST_KNOT_S)
-        self._knots.append((self._t_s, self.x_mm))
+        t_s = self._knots[-1][0] + max(duration_s, LEAST_KNOT_S)
+        self._knots.append((t_s, self.x_mm))
 
     def motion(self) -> Motion:
-        """Give the motion made so far."""
+        """Return the motion made so far."""
         t_s, x_mm = np.array(self._knots).T
         return Motion(t_s, x_mm)
 
@@ -139,8 +115,6 @@ class Course:
     ----------
     t_s : float64[n]
         Times of the knots of what is under way, or was last, from 0.
-    ways : tuple of float64[n]
-        Places x and y and angles at these times.
     begun_ns : int
         When it began.
     """
@@ -149,7 +123,6 @@ class Course:
         self,
         x_mm: float,
         y_mm: float = 0.0,
-        theta_rad: float = 0.0,
         *,
         free_y: bool,
         turns: bool,
@@ -158,31 +131,31 @@ class Course:
         self._free_y, self._turns = free_y, turns
         self.begun_ns = now_ns
         self.t_s: NDArray[np.float64] = np.zeros(1)
-        self.ways = tuple(np.full(1, place) for place in (x_mm, y_mm, theta_rad))
+        self._ways = [np.full(1, place) for place in (x_mm, y_mm, 0.0)]
 
-    def is_over(self, now_ns: int) -> bool:
-        """Tell whether the hand has come to the end of its motion."""
+    def is_over(self, now_ns: Any) -> Any:
+        """Tell whether the hand is at the end of its motion, at a time or at each of an array."""
         return (now_ns - self.begun_ns) / _NS_PER_S >= self.t_s[-1]
 
-    def at(self, now_ns: int) -> tuple[float, float, float]:
-        """Place x and y, and the angle, on the axes that there are."""
+    def at(self, now_ns: Any) -> tuple[Any, Any, Any]:
+        """Return the place x and y, and the angle, at a time, or at each of an array of times."""
         t_s = (now_ns - self.begun_ns) / _NS_PER_S
-        x_mm, y_mm, theta_rad = self.ways
+        x_mm, y_mm, theta_rad = self._ways
         return (
-            float(np.interp(t_s, self.t_s, x_mm)),
-            float(np.interp(t_s, self.t_s, y_mm)) if self._free_y else 0.0,
-            float(np.interp(t_s, self.t_s, theta_rad)) if self._turns else 0.0,
+            np.interp(t_s, self.t_s, x_mm),
+            np.interp(t_s, self.t_s, y_mm) if self._free_y else 0.0,
+            np.interp(t_s, self.t_s, theta_rad) if self._turns else 0.0,
         )
 
     def rest(self, now_ns: int) -> Motion | None:
-        """Motion that is left of the present one; None if it is over."""
+        """Return the motion that is left of the present one; None if it is over."""
         t_s = (now_ns - self.begun_ns) / _NS_PER_S
         later = self.t_s > t_s
         if not later.any():
             return None
-        here = zip(self.at(now_ns), self.ways, strict=True)
-        ways = (np.concatenate(([now], way[later])) for now, way in here)
-        return Motion(np.concatenate(([0.0], self.t_s[later] - t_s)), *ways)
+        here = zip(self.at(now_ns), self._ways, strict=True)
+        ways = (np.append(now, way[later]) for now, way in here)
+        return Motion(np.append(0.0, self.t_s[later] - t_s), *ways)
 
     def go_to(
         self,
@@ -198,7 +171,7 @@ class Course:
         turn_s = theta_rad / TURN_RAD_S if self._turns else 0.0
         self.begun_ns = now_ns
         self.t_s = np.array([0.0, max(far_mm / speed_mm_s, turn_s, least_s)])
-        self.ways = tuple(np.array(ends) for ends in zip(here, to, strict=True))
+        self._ways = [np.array(ends) for ends in zip(here, to, strict=True)]
 
     def follow(self, motion: Motion, now_ns: int) -> None:
         """Go along a motion, and first to where it begins; y and θ stay if it has none."""
@@ -207,8 +180,8 @@ class Course:
         self.go_to([float(way[0]) for way in ways], now_ns)
         approach_s = float(self.t_s[-1])
         if approach_s > 0:
-            self.t_s = np.concatenate(([0.0], motion.t_s + approach_s))
-            begun = zip(self.ways, ways, strict=True)
-            self.ways = tuple(np.concatenate((here[:1], way)) for here, way in begun)
+            self.t_s = np.append(0.0, motion.t_s + approach_s)
+            begun = zip(self._ways, ways, strict=True)
+            self._ways = [np.append(here[0], way) for here, way in begun]
         else:
-            self.t_s, self.ways = motion.t_s, tuple(ways)
+            self.t_s, self._ways = motion.t_s, ways

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qsl
 
 import numpy as np
@@ -12,12 +12,12 @@ from vbraille.devices.base import Device
 from vbraille.devices.events import Button, HandDone, HandHeld, Knob
 from vbraille.display import Pose
 from vbraille.errors import InputError, check_range
-from vbraille.simulation.controls import MOST_BUTTONS, Controls, parse_presses
+from vbraille.simulation.controls import MOST_BUTTONS, Controls, parse_moves
 from vbraille.simulation.hand import STILL_S, Area, Still
 from vbraille.simulation.motion import Course
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
-from vbraille.simulation.steering import BeAt, GlideTo, Hold, LetGo, ReadLine, ReadPage
+from vbraille.simulation.steering import GlideTo, Hold, LetGo, ReadLine, ReadPage
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class SimulatedDevice(Device):
 
     The encoders count, levels are as coarse as the device says, and the actuators rest on close, as
     on other devices. The carriage has the axes that the device says: y from the top of the page
-    down, and the angle, both without steps.
+    down, and the angle without steps.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class SimulatedDevice(Device):
         self.hand = hand
         self._controls = Controls(presses)
         self._opened_ns = now_ns()
-        self._pressed: list[Event] = []
+        self._events: list[Event] = []
         self._held_ns: int | None = None  # when a person who holds the hand last moved it
         self._left: Motion | None = None  # what the hand had not done yet when it was taken
         self._ordered = False  # whether an order is not done yet
@@ -99,46 +99,43 @@ class SimulatedDevice(Device):
         self._opened_ns += gone_ns
         self._now_ns = now_ns
 
-    def press(self, button: int) -> None:
-        """Press a button, 1 to 8."""
+    def press(self, button: int, *, pressed: bool = True) -> None:
+        """Press a button, 1 to 8, or let it go."""
         check_range("button", button, 1, MOST_BUTTONS)
-        self._pressed.append(Button(button, pressed=True, at_ns=self._now_ns()))
+        self._events.append(Button(button, pressed=pressed, at_ns=self._now_ns()))
 
     def let_go(self, button: int) -> None:
         """Let go of a button, 1 to 8."""
-        check_range("button", button, 1, MOST_BUTTONS)
-        self._pressed.append(Button(button, pressed=False, at_ns=self._now_ns()))
+        self.press(button, pressed=False)
 
     def turn(self, knob: int, value: float) -> None:
         """Turn a knob, counted from 1, to a position from 0 to 1."""
         check_range("position of a knob", value, 0, 1)
-        self._pressed.append(Knob(knob, value))
+        self._events.append(Knob(knob, value))
 
     def take_events(self) -> Sequence[Event]:
-        """Buttons and knobs that were moved since the last call, and what the hand has done."""
-        controls, before, now_ns = self._controls, self._controls.buttons, self._now_ns()
+        """Return moves of buttons and knobs since the last call, and what the hand has done."""
+        controls, now_ns = self._controls, self._now_ns()
         if self._ordered and self._course.is_over(now_ns):
             self._ordered = False
-            self._pressed.append(HandDone(now_ns))
-        told, self._pressed = self._pressed, []
+            self._events.append(HandDone(now_ns))
+        before = controls.buttons
         controls.advance((now_ns - self._opened_ns) / NS_PER_S)
-        if changed := before ^ controls.buttons:
-            told += [
-                Button(bit + 1, pressed=bool(controls.buttons >> bit & 1), at_ns=now_ns)
-                for bit in range(MOST_BUTTONS)
-                if changed >> bit & 1
-            ]
+        for button in range(1, MOST_BUTTONS + 1):
+            bit = 1 << (button - 1)
+            if (before ^ controls.buttons) & bit:
+                self.press(button, pressed=bool(controls.buttons & bit))
+        told, self._events = self._events, []
         return told
 
     def obey(self, order: HandOrder) -> None:
         """Have the hand follow an order from now on; a person who holds it goes first."""
-        now_ns = self._now_ns()
         if isinstance(order, Hold):
-            self._be_held(order, now_ns)
+            self._be_held(order, self._now_ns())
         elif isinstance(order, LetGo):
             if self._held_ns is not None:
                 self._held_ns = None
-                self._pressed.append(HandHeld(held=False))
+                self._events.append(HandHeld(held=False))
                 if self._left is not None:
                     self.move(self._left)
         elif self._held_ns is None:
@@ -149,43 +146,33 @@ class SimulatedDevice(Device):
         """Have the hand go where a person holds it."""
         since_s = GLIDE_S
         if self._held_ns is None:
-            self._pressed.append(HandHeld(held=True))
+            self._events.append(HandHeld(held=True))
             self._left = self._course.rest(now_ns)
         else:
             since_s = min((now_ns - self._held_ns) / NS_PER_S, GLIDE_S)
         self._held_ns = now_ns
         info = self.display
-        left_mm, right_mm = -info.span_mm, info.travel_mm - info.span_mm
-        to = (
-            min(max(at.x_mm - info.span_mm / 2, left_mm), right_mm),
-            min(max(at.y_mm, 0.0), info.height_mm),
-            at.theta_rad if info.turns else 0.0,
-        )
+        way_mm = min(max(at.x_mm + info.span_mm / 2, 0.0), info.travel_mm)
+        y_mm = min(max(at.y_mm, 0.0), info.height_mm)
+        to = way_mm - info.span_mm, y_mm, at.theta_rad if info.turns else 0.0
         self._course.go_to(to, now_ns, HELD_MM_S, since_s)
 
     def until_done(self, times_ns: NDArray[np.int64]) -> int:
-        """Number of given times that come until the hand has done its order.
+        """Return the number of given times that come until the hand has done its order.
 
         The time at which it is done counts too. All times count if there is no order or it takes
         longer.
         """
-        course = self._course
-        done = (times_ns - course.begun_ns) / NS_PER_S >= course.t_s[-1]
-        if not self._ordered or not done.any():
-            return times_ns.size
-        return int(done.argmax()) + 1
+        done = np.asarray(self._course.is_over(times_ns))
+        return int(done.argmax()) + 1 if self._ordered and done.any() else times_ns.size
 
     def _do(self, order: HandOrder) -> None:
         """Have the hand follow an order; a recorded hand sets out with the first and goes on."""
         hand, home_mm = self.hand, -self.display.span_mm
         course, now_ns = self._course, self._now_ns()
-        if isinstance(order, BeAt):
-            x_mm = order.x_mm - self.display.span_mm / 2
-            course.go_to([x_mm, order.y_mm, order.theta_rad], now_ns, HELD_MM_S)
-        elif isinstance(order, GlideTo):
-            *_, theta_rad = course.at(now_ns)
-            x_mm = order.x_mm - self.display.span_mm / 2
-            course.go_to([x_mm, order.y_mm, theta_rad], now_ns, order.speed_mm_s)
+        if isinstance(order, GlideTo):
+            to = order.x_mm + home_mm / 2, order.y_mm, course.at(now_ns)[2]
+            course.go_to(to, now_ns, order.speed_mm_s)
         elif isinstance(hand, Still):
             course.go_to(course.at(now_ns), now_ns, HELD_MM_S, STILL_S)
         elif isinstance(hand, Recorded):
@@ -203,39 +190,20 @@ class SimulatedDevice(Device):
         self._course.follow(motion, self._now_ns())
 
     def read(self) -> Pose | None:
-        """Pose of the carriage now, to the nearest count of its encoders."""
+        """Return the pose of the carriage now, to the nearest count of its encoders."""
         now_ns = self._now_ns()
-        info = self.display
         if self._is_free and self.frames and self._course.is_over(now_ns):
-            self._do(ReadLine(info.travel_mm - info.span_mm))
-        hand_mm, y_mm, theta_rad = self._course.at(now_ns)
-        way = min(max(hand_mm + info.span_mm, 0.0), info.travel_mm)
-        counts = round(way * info.counts_per_mm)
-        x_mm = counts / info.counts_per_mm - info.span_mm / 2
-        if not info.height_mm:
-            return Pose(now_ns, x_mm, 0.0, theta_rad)
-        way = min(max(y_mm, 0.0), info.height_mm)
-        return Pose(now_ns, x_mm, round(way * info.counts_per_mm) / info.counts_per_mm, theta_rad)
+            self._do(ReadLine(self.display.travel_mm - self.display.span_mm))
+        return Pose(now_ns, *map(float, self.poses_at(now_ns)))
 
-    def poses_at(self, times_ns: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Poses that `read` would give at times of the clock, if nothing changes.
-
-        Returns
-        -------
-        float64[3, n]
-            x and y in mm, and θ in radians, as of `Pose`.
-        """
-        # The same as in `read`, where arrays for a single place would take several times as long.
-        info, course = self.display, self._course
-        t_s = (times_ns - course.begun_ns) / NS_PER_S
-        poses = np.zeros((3, times_ns.size))
-        for axis, most_mm, span_mm in ((0, info.travel_mm, info.span_mm), (1, info.height_mm, 0.0)):
-            hand_mm = np.interp(t_s, course.t_s, course.ways[axis]) + span_mm
-            counts = np.rint(np.clip(hand_mm, 0.0, most_mm) * info.counts_per_mm)
-            poses[axis] = counts / info.counts_per_mm - span_mm / 2
-        if info.turns:
-            poses[2] = np.interp(t_s, course.t_s, course.ways[2])
-        return poses
+    def poses_at(self, times_ns: Any) -> tuple[Any, Any, Any]:
+        """Return x and y in mm, and θ in radians, at a time or at each of an array of times."""
+        info = self.display
+        hand_mm, y_mm, theta_rad = self._course.at(times_ns)
+        way_mm = np.minimum(np.maximum(hand_mm + info.span_mm, 0.0), info.travel_mm)
+        x_mm = np.rint(way_mm * info.counts_per_mm) / info.counts_per_mm - info.span_mm / 2
+        y_mm = np.minimum(np.maximum(y_mm, 0.0), info.height_mm)
+        return x_mm, np.rint(y_mm * info.counts_per_mm) / info.counts_per_mm, theta_rad
 
     def _send(self, frame: NDArray[np.float64]) -> None:
         np.rint(frame * (self.display.levels - 1), out=self.levels, casting="unsafe")
@@ -262,4 +230,4 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
     if given or not seed.isdecimal() or (address and not address.startswith("?")):
         raise InputError(f"there is no device sim:{address}; give sim, or sim:?hand=HAND&seed=N")
     moved = parse_hand(hand, int(seed), pointed=True) if hand else None
-    return SimulatedDevice(wanted, hand=moved, presses=parse_presses(presses))
+    return SimulatedDevice(wanted, hand=moved, presses=parse_moves(presses))

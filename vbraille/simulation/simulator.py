@@ -36,6 +36,7 @@ _KEYS_EVERY: Final = 20  # ticks
 _OFF_PLACE_MM: Final = 5000.0
 _LATE_WATCHDOG_MS: Final = 200
 _KNOB_TOP: Final = 255
+_NEVER_NS: Final = 1 << 62
 
 
 class Defect(StrEnum):
@@ -96,6 +97,10 @@ class _Way:
 
     def __init__(self, faults: Faults, seed: int) -> None:
         self._faults, self._random = faults, random.Random(seed)
+        self.clear()
+
+    def clear(self) -> None:
+        """Lose all that is under way."""
         self._begun = b""
         self._held: deque[tuple[int, bytes]] = deque()
 
@@ -111,16 +116,11 @@ class _Way:
         self._held.append((due_ns, chunk))
 
     def take(self, now_ns: int) -> bytes:
-        """Bytes that have arrived."""
-        arrived = []
+        """Return the bytes that have arrived."""
+        arrived = b""
         while self._held and self._held[0][0] <= now_ns:
-            arrived.append(self._held.popleft()[1])
-        return b"".join(arrived)
-
-    def clear(self) -> None:
-        """Lose all that is under way."""
-        self._begun = b""
-        self._held.clear()
+            arrived += self._held.popleft()[1]
+        return arrived
 
     def _spoilt(self, line: bytes) -> bytes:
         if self._random.random() < self._faults.drop:
@@ -179,37 +179,32 @@ class Simulator:
         self._faults = faults or Faults()
         self._info = info_of(display)
         self._placed = placed
-        self.controller = self._fresh()
-        self._display, self._hand, self._area = display, hand, area
-        self._carriage = Carriage(
-            hand,
-            display.span_mm,
-            display.travel_mm,
-            height_mm=display.height_mm,
-            turns=display.turns,
-            area=area,
-        )
+        self._carriage = Carriage(display, hand, area)
         self._port, self._say, self._keys = port, say, keys
         self._controls = controls or Controls()
         self._in, self._out = _Way(self._faults, self._faults.seed), _Way(self._faults, -1)
+        self._ticks = 0
         self._begun_ns = time.monotonic_ns()
-        self._greeted_us: int | None = None  # for the first time
-        self._greetings = self._frames = self._trips = self._ticks = 0
+        self._greeted_ns: int | None = None  # for the first time
         self._last_frame_us = 0
-        self._stalled = False
-        self._turn_us = round(STALL_EVERY_S * 1e6)  # when the device stalls, or goes on
-        self._plug_us: int | None = None  # when the device is unplugged, or plugged in again
-        self._boots_us: int | None = None  # until when the board starts
-        self._open = False
+        self._is_stalled = self._is_open = False
+        # When it stalls or goes on, is unplugged or plugged in, and has started.
+        self._stall_ns = self._begun_ns + round(STALL_EVERY_S * _NS_PER_S)
+        self._plug_ns, self._started_ns = _NEVER_NS, 0
+        self._start()
 
-    def _fresh(self) -> Controller:
-        controller = Controller(self._info, placed=self._placed)
-        controller.acknowledges = self._faults.defect is not Defect.NO_ACKNOWLEDGEMENT
-        if self._faults.defect is Defect.NO_WATCHDOG:
+    def _start(self) -> None:
+        """Make the controller anew, with nothing under way."""
+        self.controller = controller = Controller(self._info, placed=self._placed)
+        self._greetings = self._frames = self._trips = 0
+        self._in.clear()
+        self._out.clear()
+        defect = self._faults.defect
+        controller.acknowledges = defect is not Defect.NO_ACKNOWLEDGEMENT
+        if defect is Defect.NO_WATCHDOG:
             controller.watchdog_ms = None
-        elif self._faults.defect is Defect.LATE_WATCHDOG:
+        elif defect is Defect.LATE_WATCHDOG:
             controller.watchdog_ms = _LATE_WATCHDOG_MS
-        return controller
 
     @property
     def now_us(self) -> int:
@@ -229,13 +224,15 @@ class Simulator:
         while not stopped():
             due_ns = max(due_ns + _TICK_NS, time.monotonic_ns())
             self._listen_until(due_ns)
+            self._go_wrong(time.monotonic_ns())
+            self._hear()
             self._tick()
 
     def _listen_until(self, due_ns: int) -> None:
         """Take what the host sends until a time."""
         while (left_ns := due_ns - time.monotonic_ns()) > 0:
             port = self._port.descriptor
-            if self._stalled or port is None or not self._port.is_open:
+            if self._is_stalled or port is None or not self._port.is_open:
                 time.sleep(left_ns / _NS_PER_S)
                 return
             if not select.select((port,), (), (), left_ns / _NS_PER_S)[0]:
@@ -243,39 +240,62 @@ class Simulator:
             self._in.put(self._port.read(), time.monotonic_ns())
             self._hear()
 
+    def _go_wrong(self, now_ns: int) -> None:
+        """Stall, start the board anew or unplug the device, as its faults say."""
+        faults = self._faults
+        if faults.stall_s and now_ns >= self._stall_ns:
+            self._is_stalled = not self._is_stalled
+            lasts_s = faults.stall_s if self._is_stalled else STALL_EVERY_S
+            self._stall_ns = now_ns + round(lasts_s * _NS_PER_S)
+        if faults.boot_s:
+            was_open, self._is_open = self._is_open, self._port.is_open
+            if self._is_open and not was_open:
+                self._start()
+                self._started_ns = now_ns + round(faults.boot_s * _NS_PER_S)
+                self._say("the board starts")
+        if now_ns < self._plug_ns:
+            return
+        if self._port.descriptor is None:
+            self._port.plug()
+            self._plug_ns = _NEVER_NS
+            self._say(f"plugged in again: {self._port.path}")
+        else:
+            self._port.unplug()
+            self.controller.hang_up()
+            self._in.clear()
+            self._out.clear()
+            self._plug_ns = now_ns + round(UNPLUGGED_S * _NS_PER_S)
+            self._say("unplugged")
+
     def _hear(self) -> None:
-        controller, now_us = self.controller, self.now_us
-        chunk = self._in.take(time.monotonic_ns())
-        if chunk and self._boots_us is None:
+        controller, now_ns = self.controller, time.monotonic_ns()
+        chunk = self._in.take(now_ns)
+        if chunk and now_ns >= self._started_ns:
             controller.receive(chunk)
         if controller.greetings != self._greetings:
             self._greetings = controller.greetings
+            self._greeted_ns = now_ns if self._greeted_ns is None else self._greeted_ns
             self._say("greeted by a host")
-            self._greeted_us = now_us if self._greeted_us is None else self._greeted_us
             if self._faults.unplug_every_s:
-                self._plug_us = now_us + round(self._faults.unplug_every_s * 1e6)
+                self._plug_ns = now_ns + round(self._faults.unplug_every_s * _NS_PER_S)
         if controller.frames != self._frames:
-            self._frames, self._last_frame_us = controller.frames, now_us
+            self._frames, self._last_frame_us = controller.frames, self.now_us
             self._carriage.set_out()
 
     def _tick(self) -> None:
-        now_us, controller = self.now_us, self.controller
+        controller, now_us = self.controller, self.now_us
         self._ticks += 1
-        self._mind_board(now_us)
-        self._hear()
+        self._move_controls()
         at = self._carriage.at(now_us)
-        way_mm = at.way_mm
-        if self._faults.defect is Defect.OFF_PLACE:
-            way_mm += _OFF_PLACE_MM
+        off_mm = _OFF_PLACE_MM if self._faults.defect is Defect.OFF_PLACE else 0.0
         counts = self._info["counts_per_mm"]
-        controller.x = round(way_mm * counts[0])
+        controller.x = round((at.way_mm + off_mm) * counts[0])
         controller.y = round(at.y_mm * counts[-1])
         controller.turn = round(at.theta_rad / math.tau * self._info["counts_per_turn"])
-        self._move_controls(now_us)
-        line = controller.tick(now_us)
-        if line and not self._stalled and self._boots_us is None:
-            self._out.put(line, time.monotonic_ns())
-        if message := self._out.take(time.monotonic_ns()):
+        line, now_ns = controller.tick(now_us), time.monotonic_ns()
+        if line and not self._is_stalled and now_ns >= self._started_ns:
+            self._out.put(line, now_ns)
+        if message := self._out.take(now_ns):
             self._port.send(message)
         if controller.trips != self._trips and controller.at_rest:
             self._trips = controller.trips
@@ -283,35 +303,12 @@ class Simulator:
             self._say(
                 f"watchdog: trip {self._trips}, at rest {after_ms:.1f} ms after the last frame"
             )
-        if self._faults.stall_s and now_us >= self._turn_us:
-            self._stalled = not self._stalled
-            turn_s = self._faults.stall_s if self._stalled else STALL_EVERY_S
-            self._turn_us = now_us + round(turn_s * 1e6)
-        if self._plug_us is not None and now_us >= self._plug_us:
-            self._plug(now_us)
 
-    def _mind_board(self, now_us: int) -> None:
-        """Start the board anew when its port is opened, if that resets it."""
-        if not self._faults.boot_s:
-            return
-        is_open = self._port.is_open
-        if is_open and not self._open:
-            self.controller = self._fresh()
-            self._greetings = self._frames = self._trips = 0
-            self._in.clear()
-            self._out.clear()
-            self._boots_us = now_us + round(self._faults.boot_s * 1e6)
-            self._say("the board starts")
-        self._open = is_open
-        if self._boots_us is not None and now_us >= self._boots_us:
-            self._boots_us = None
-
-    def _move_controls(self, now_us: int) -> None:
+    def _move_controls(self) -> None:
         """Have buttons and knobs stand as the script and the keys have moved them."""
-        controls = self._controls
-        since_s = 0.0
-        if self._greeted_us is not None:
-            since_s = (now_us - self._greeted_us) / 1e6
+        controls, since_s = self._controls, 0.0
+        if self._greeted_ns is not None:
+            since_s = (time.monotonic_ns() - self._greeted_ns) / _NS_PER_S
             controls.advance(since_s)
         if self._ticks % _KEYS_EVERY == 0:
             for key in self._keys():
@@ -319,17 +316,3 @@ class Simulator:
                     self._say(said)
         self.controller.buttons = controls.buttons
         self.controller.knobs = [round(knob * _KNOB_TOP) for knob in controls.knobs]
-
-    def _plug(self, now_us: int) -> None:
-        """Unplug the device, or plug it in again."""
-        if self._port.descriptor is None:
-            self._port.plug()
-            self._plug_us = None
-            self._say(f"plugged in again: {self._port.path}")
-        else:
-            self._port.unplug()
-            self.controller.hang_up()
-            self._in.clear()
-            self._out.clear()
-            self._say("unplugged")
-            self._plug_us = now_us + round(UNPLUGGED_S * 1e6)

@@ -14,12 +14,12 @@ if TYPE_CHECKING:
     from vbraille.simulation.hand import Hand
     from vbraille.simulation.recorded import Recorded
 
-SLOW = ("slow", "device")  # names of the hand that reads slowly; the second is its older name
+HABITS = {"slow": DEVICE, "device": DEVICE, "fluent": FLUENT}
 STILL = "still"  # name of the hand that only moves in the live view
 
 
 def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Recorded:
-    """Hand that a spec describes.
+    """Return the hand that a spec describes.
 
     Parameters
     ----------
@@ -37,25 +37,6 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
         If there is no such hand, a number is out of range, or the file cannot be used.
     """
     kind, _, rest = spec.partition(":")
-    try:
-        if spec in SLOW:
-            return HumanHand(DEVICE, seed)
-        if spec == "fluent":
-            return HumanHand(FLUENT, seed)
-        if kind == "recorded" and rest:
-            from vbraille.simulation.recorded import load_recorded
-
-            return load_recorded(rest)
-        if kind == "sweep":
-            return Sweep(_speed(rest, kind))
-        if spec != STILL:  # a hand is loaded when it is asked for
-            from vbraille.simulation.exploring import parse_explorer
-
-            explorer = parse_explorer(spec)
-            if explorer is not None:
-                return explorer
-    except ValueError as error:
-        raise InputError(str(error)) from None
     if spec == STILL and pointed:
         return Still()
     if spec == STILL:
@@ -63,6 +44,21 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
             f"a still hand moves only in the live view; add {setting('monitor')} where there is "
             f"that option, or give another hand"
         )
+    try:
+        if spec in HABITS:
+            return HumanHand(HABITS[spec], seed)
+        if kind == "sweep":
+            return Sweep(_speed(rest))
+        if kind == "recorded" and rest:
+            from vbraille.simulation.recorded import load_recorded
+
+            return load_recorded(rest)
+        if kind in ("wide", "spot"):  # a hand is loaded when it is asked for
+            from vbraille.simulation.exploring import parse_explorer
+
+            return parse_explorer(spec)
+    except ValueError as error:
+        raise InputError(str(error)) from None
     raise InputError(
         f"there is no hand {spec!r}; give sweep:SPEED in mm/s, slow, fluent or recorded:FILE, "
         f"or wide or spot:X,Y to go over a picture"
@@ -99,10 +95,11 @@ def device_spec(device: str, hand: str | None, seed: int) -> str:
     return f"sim:?{urlencode({'hand': hand, 'seed': seed})}"
 
 
-def _speed(text: str, kind: str) -> float:
+def _speed(text: str) -> float:
     try:
         return float(text)
     except ValueError:
         least, most = SPEED_BOUNDS_MM_S
-        wanted = f"it must be a number, {least:g} to {most:g} mm/s"
-        raise ValueError(f"{kind} speed is {text!r}; {wanted}") from None
+        raise ValueError(
+            f"sweep speed is {text!r}; it must be a number, {least:g} to {most:g} mm/s"
+        ) from None

@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping, Sequence
-from contextlib import ExitStack
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -77,18 +76,17 @@ def check_samples(open_device: Open, clock: Clock | None = None) -> None:
     while a simulated controller works within the driver's calls.
     """
     clock = clock or RealClock()
-    with ExitStack() as entered:
-        device = entered.enter_context(_opened(open_device))
+    with _opened(open_device) as device:
         info, frame = device.display, _frame(device, 0.0)
         # The first calls may load what is compiled.
         device.read()
         device.write(frame)
-        watch = entered.enter_context(Watch(device, clock))
+        watch = Watch(device, clock)
         slack = 1 / info.counts_per_mm
         begun_ns = due_ns = clock.now_ns()
         while due_ns < begun_ns + _LOOKING_S * NS_PER_S:
-            sample = device.read()
-            device.write(frame)
+            sample = watch.read()
+            watch.write(frame)
             if sample is not None:
                 way_mm = sample.x_mm + info.span_mm / 2
                 assert -slack <= way_mm, "at the left stop the array's centre is at -span_mm / 2"

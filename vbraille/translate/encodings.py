@@ -5,9 +5,13 @@ from __future__ import annotations
 import codecs
 import re
 import unicodedata
+from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
 from vbraille.wording import setting
+
+if TYPE_CHECKING:
+    from vbraille.translate.source import Source
 
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8"),
@@ -40,7 +44,15 @@ _NOT_ASCII = re.compile(r"[^\x00-\x7f\ufffd]")
 _ACCENTED = re.compile("[^\u0300-\u036f\u3099\u309a][\u0300-\u036f\u3099\u309a]+")
 
 
-def decode(content: bytes, encoding: str | None = None) -> tuple[str, str, str]:
+def read_text_of(source: Source, encoding: str | None) -> str:
+    """Text of a book's file, with a note on the book if the encoding is a guess."""
+    text, note = decode(source.stream.read(), encoding)
+    if note:
+        source.note(f"{source.name} {note}")
+    return text
+
+
+def decode(content: bytes, encoding: str | None = None) -> tuple[str, str]:
     """Text of a file.
 
     A byte-order mark decides; else UTF-8, if it is that; else windows-1252, or what is likeliest
@@ -55,8 +67,8 @@ def decode(content: bytes, encoding: str | None = None) -> tuple[str, str, str]:
 
     Returns
     -------
-    text, name, note : str
-        The text, the name of the encoding, and a sentence's end on it if that is a guess.
+    text, note : str
+        The text, and the end of a sentence on its encoding if that is a guess.
 
     Raises
     ------
@@ -71,15 +83,15 @@ def decode(content: bytes, encoding: str | None = None) -> tuple[str, str, str]:
             raise InputError(
                 f"there is no text encoding {encoding!r}; give one such as utf-8 or cp1252"
             ) from None
-        return text.removeprefix("\ufeff"), encoding, ""
+        return text.removeprefix("\ufeff"), ""
     for mark, name in _MARKS:
         if content.startswith(mark):
-            return content[len(mark) :].decode(name, "replace"), name, ""
+            return content[len(mark) :].decode(name, "replace"), ""
     wide = _wide(content[:4096])
     if wide:
-        return content.decode(wide, "replace"), wide, ""
+        return content.decode(wide, "replace"), ""
     try:
-        return content.decode(), "utf-8", ""
+        return content.decode(), ""
     except UnicodeDecodeError as error:
         wrong = error.start
     text = content.decode("utf-8", "replace")
@@ -88,7 +100,7 @@ def decode(content: bytes, encoding: str | None = None) -> tuple[str, str, str]:
         sample = sample[: sample.rfind(b"\n", 0, _SAMPLE) + 1] or sample[:_SAMPLE]
     beyond = sum(byte > 127 for byte in sample)
     if text.count("\ufffd") * 50 < len(_NOT_ASCII.findall(text)):
-        return text, "utf-8", f"is UTF-8 with wrong bytes, the first at {wrong}"
+        return text, f"is UTF-8 with wrong bytes, the first at {wrong}"
     name = "cp1252"
     if beyond * 3 > len(sample):
         import charset_normalizer
@@ -97,7 +109,6 @@ def decode(content: bytes, encoding: str | None = None) -> tuple[str, str, str]:
         name = found.encoding if found else name
     return (
         _by_bytes(content, name),
-        name,
         f"is not UTF-8 at byte {wrong}, and is read as {name}; {setting('encoding')} names another",
     )
 

@@ -51,7 +51,7 @@ _FORMATS = {
         Format("markdown", "markdown:read_markdown", (".md", ".markdown"), ("encoding",)),
         Format("html", "html:read_html", (".html", ".htm", ".xhtml"), ("encoding",)),
         Format("epub", "epub:read_epub"),
-        Format("dtbook", "html:read_dtbook"),
+        Format("dtbook", "html:read_html"),
         Format("docx", "docx:read_docx"),
         Format("odt", "odt:read_odt"),
         Format("rtf", "rtf:read_rtf"),

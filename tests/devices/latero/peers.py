@@ -13,10 +13,10 @@ PATIENCE_S = 20.0
 
 
 @contextmanager
-def simulated(hand="sweep:60", span_mm=8.4, **options):
+def simulated(hand="sweep:60", **options):
     """A Latero that answers until the end; `spec` tells where."""
     options = {"port": 0, "wait_s": 0.0, "say": lambda _: None, **options}
-    latero = LateroSimulator(LateroCarriage(parse_hand(hand), span_mm), **options)
+    latero = LateroSimulator(LateroCarriage(parse_hand(hand)), **options)
     ended = threading.Event()
     thread = threading.Thread(target=latero.run, args=(ended.is_set,))
     thread.start()

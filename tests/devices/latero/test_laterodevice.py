@@ -11,12 +11,11 @@ import pytest
 
 from tests.devices.latero.peers import address_of, simulated, until
 from vbraille.devices.events import Back, Button, Placing, Silent
-from vbraille.devices.latero.conversation import LateroStage
 from vbraille.devices.latero.device import DISPLAY, open_latero
-from vbraille.devices.latero.wire import REST, full_request
+from vbraille.devices.latero.wire import REST
 from vbraille.devices.registry import open_device
 from vbraille.errors import DeviceError, InputError
-from vbraille.simulation.controls import parse_presses
+from vbraille.simulation.controls import parse_moves
 from vbraille.simulation.lateroboard import LateroBoard
 from vbraille.testing.conformance import CHECKS
 
@@ -87,13 +86,10 @@ def test_the_watchdog_knows_where_the_blades_are_going_before_they_are_told():
             def recv_into(self, _room):
                 raise BlockingIOError
 
-            def close(self):
-                pass
-
-        device._line.close()
-        device._line = Line()
+        line, device._line = device._line, Line()
         device.write(np.zeros((8, 8)))
         device.write(FELT)
+        device._line = line
         assert sent
         assert all(told == shown for told, shown in sent)
 
@@ -113,7 +109,7 @@ def test_at_the_lower_left_x_is_half_the_span_before_the_line():
 
 def test_buttons_reach_the_reader():
     with (
-        simulated(script=parse_presses("2@0s-60s")) as latero,
+        simulated(script=parse_moves("2@0s-60s")) as latero,
         open_latero(address_of(latero), None) as device,
     ):
         _, events = ticks(device, found=lambda _, events: pressed(events))
@@ -142,7 +138,6 @@ def test_a_latero_that_is_away_comes_back():
         with simulated(port=port):
             ticks(device, found=lambda _, events: Back() in events)
             until(lambda: ticks(device, seconds=0.01) and device.taking)
-            assert device.conversation.stage is LateroStage.LIVE
             assert device.counts()["reconnections"] >= 1
 
 
@@ -155,43 +150,15 @@ def test_two_programs_on_one_latero(latero):
     open_latero(address_of(latero), None).close()
 
 
-class Stopping:
-    """A wait in which the driver is stopped once for longer than the watchdog waits."""
-
-    def __init__(self, latero):
-        self.latero, self.done, self.levels = latero, False, []
-
-    def __call__(self, seconds):
-        time.sleep(seconds)
-        if not self.done and (self.latero.board.levels < 150).any():
-            self.done = True
-            until(lambda: self.latero.board.at_rest)
-        self.levels.append(int(self.latero.board.levels.min()))
-
-
-@pytest.mark.parametrize("end", ["rest", "close"])
-def test_a_driver_that_is_stopped_on_its_way_to_rest_goes_on_from_where_the_watchdog_was(
-    latero, end
-):
-    stopping = Stopping(latero)
-    with open_latero(address_of(latero), None, pause=stopping) as device:
+def test_a_driver_that_was_stopped_goes_on_from_rest(latero):
+    with open_latero(address_of(latero), None) as device:
         ticks(device, np.ones((8, 8)), found=lambda *_: (latero.board.levels == 0).all())
-        getattr(device, end)()
-    after = stopping.levels[next(n for n, low in enumerate(stopping.levels) if low == 150) :]
-    assert set(after) == {150}
-
-
-def test_what_ends_the_taking_of_leave_leaves_the_blades_to_the_watchdog(latero):
-    def pause(seconds):
-        time.sleep(seconds)
-        if not latero.board.at_rest:
-            raise KeyboardInterrupt
-
-    device = open_latero(address_of(latero), None, pause=pause)
-    ticks(device, found=lambda *_: (latero.board.levels == 75).all())
-    with pytest.raises(KeyboardInterrupt):
-        device.close()
-    until(lambda: latero.board.at_rest and not latero.board.powered)
+        until(lambda: latero.board.at_rest)
+        assert device.write(np.ones((8, 8))) is False
+        assert latero.board.at_rest
+        ticks(device, np.ones((8, 8)), found=lambda *_: (latero.board.levels == 0).all())
+        assert device.rested == 2
+        assert device.watchdog_trips == 1
 
 
 class Peer:
@@ -278,7 +245,3 @@ def test_a_host_that_is_none():
 def test_a_rate_at_which_the_watchdog_would_act_is_refused(latero):
     with pytest.raises(InputError, match="40 or more"):
         open_latero(address_of(latero), replace(DISPLAY, rate_hz=30.0))
-
-
-def test_the_first_request_has_all_blades_at_rest():
-    assert bytes(full_request())[15:79] == bytes((150,)) * 64

@@ -15,12 +15,23 @@ import pytest
 
 from tests.devices.latero.peers import PATIENCE_S, address_of, simulated, until
 from vbraille.devices.latero import watchdog
-from vbraille.devices.latero.conversation import power_off
 from vbraille.devices.latero.device import WatchdogProcess
-from vbraille.devices.latero.wire import FULL, RAW, full_request, parse_request
+from vbraille.devices.latero.wire import (
+    CONTROLLER,
+    FULL,
+    POWERED_OFF,
+    RAW,
+    WRITE,
+    full_request,
+    parse_request,
+    raw_request,
+)
 from vbraille.simulation.lateroboard import LateroBoard
 
 MS = 1_000_000
+
+
+OFF = raw_request(WRITE | CONTROLLER, 0, POWERED_OFF)
 
 
 class Guarded:
@@ -30,13 +41,17 @@ class Guarded:
         self.latero = LateroBoard()
         self.board = watchdog.Board(bytearray(watchdog.MEMORY_BYTES))
         self.board.full[:] = full_request()
-        self.board.off[:] = power_off(0)
+        self.board.off[:] = OFF
         self.board.words[watchdog.POWER] = power
-        levels = bytes(np.linspace(0, 150, 64).astype(np.uint8))
+        self.show(bytes(np.linspace(0, 150, 64).astype(np.uint8)))
+        self.sent, self.answers, self.deaf = [], [], deaf
+        self.watchdog = watchdog.Watchdog(self.board, self.send, self.receive)
+
+    def show(self, levels):
+        """Have the driver show levels, and beat."""
         self.board.levels[:] = levels
         self.latero.levels[:] = np.frombuffer(levels, np.uint8)
-        self.sent, self.answers, self.deaf = [], [], deaf
-        self.watchdog = watchdog.BladeWatchdog(self.board, self.send, self.receive)
+        self.board.words[watchdog.BEAT] = 1
 
     def send(self, datagram):
         self.sent.append(parse_request(bytes(datagram)))
@@ -51,8 +66,8 @@ class Guarded:
         """Have it do its work; give how long that took, in ms."""
         now_ns = begun_ns
         self.watchdog.begin(now_ns)
-        while (due_ns := self.watchdog.step(now_ns)) is not None:
-            now_ns = max(due_ns, now_ns + 1)
+        while self.watchdog.acting:
+            now_ns = max(self.watchdog.step(now_ns), now_ns + 1)
         return (now_ns - begun_ns) / MS
 
 
@@ -67,8 +82,8 @@ def test_blades_go_along_the_ramp_and_power_off():
     assert steps.min() >= 0
     assert steps.max() <= 8
     assert levels[0].min() <= 8
-    assert guarded.board.words[watchdog.TRIPS] == 1
     assert bytes(guarded.board.levels) == bytes((150,)) * 64
+    assert guarded.board.words[watchdog.ACTING] == 0
 
 
 def test_it_says_so_again_until_it_is_answered_or_patience_ends():
@@ -88,30 +103,38 @@ def test_it_leaves_power_alone_where_its_register_is_not_known():
 def test_its_requests_are_numbered_and_never_twice_alike():
     guarded = Guarded()
     guarded.act()
+    guarded.act(50 * MS)
     numbers = [one.sequence for one in guarded.sent]
     assert len(set(numbers)) == len(numbers)
-    first = len(numbers)
-    guarded.act(50 * MS)
-    again = [one.sequence for one in guarded.sent[first:]]
-    assert not set(again) & set(numbers)
 
 
-def test_it_stops_when_its_driver_beats_again():
+@pytest.mark.parametrize(("level", "after_ms"), [(0, 50), (150, 1000)])
+def test_it_acts_once_when_no_beat_comes(level, after_ms):
     guarded = Guarded()
-    guarded.watchdog.begin(0)
-    guarded.watchdog.step(0)
-    guarded.watchdog.step(5 * MS)
-    guarded.board.words[watchdog.BEAT] = 5 * MS
-    assert guarded.watchdog.step(6 * MS) is None
-    assert len(guarded.sent) == 2
-    assert guarded.board.words[watchdog.ACTING] == 0
+    now_ns = 0
+    guarded.show(bytes((level,)) * 64)
+    while not guarded.watchdog.acting:
+        acted_ns, now_ns = now_ns, guarded.watchdog.step(now_ns)
+    assert guarded.sent
+    assert acted_ns / MS == pytest.approx(after_ms, abs=0.1)
+    while now_ns < 5000 * MS:
+        now_ns = max(guarded.watchdog.step(now_ns), now_ns + 1)
+    assert guarded.board.words[watchdog.TRIPS] == 1
+    assert guarded.board.words[watchdog.AFTER] / MS == pytest.approx(after_ms, abs=0.1)
+
+
+def test_it_never_acts_before_anything_was_shown():
+    guarded = Guarded()
+    guarded.board.words[watchdog.BEAT] = 0
+    assert guarded.watchdog.step(60_000 * MS) == 60_010 * MS
+    assert not guarded.sent
 
 
 def test_a_driver_that_is_killed_just_as_it_goes_on_is_not_taken_for_back():
     """The beat of a driver that went on from a stop, and then ended, is not that it lives."""
     board = watchdog.Board(bytearray(watchdog.MEMORY_BYTES))
     board.full[:] = full_request()
-    board.off[:] = power_off(0)
+    board.off[:] = OFF
     latero, felt = LateroBoard(), bytes(64)
     lifeline, driver = os.pipe()
     ours, its = socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)
@@ -121,9 +144,9 @@ def test_a_driver_that_is_killed_just_as_it_goes_on_is_not_taken_for_back():
     watching = threading.Thread(target=watchdog.watch, args=(board, lifeline, its.fileno()))
     watching.start()
     latero.receive(ours.recv(256))  # it acts
-    os.close(driver)
     board.levels[:] = felt
     board.words[watchdog.BEAT] = time.monotonic_ns()
+    os.close(driver)
     ours.settimeout(0.01)
     while watching.is_alive():
         with suppress(TimeoutError):
@@ -146,11 +169,9 @@ def process(latero):
     """A watchdog's process, whose driver has shown something."""
     line = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     line.connect(latero._socket.getsockname())
-    process = WatchdogProcess(bytes(full_request()), bytes(power_off(0)), line.fileno())
+    process = WatchdogProcess(line.fileno(), 0)
     process.board.words[watchdog.POWER] = 1
-    process.beat(time.monotonic_ns())
-    latero.board.levels[:] = 0
-    process.board.levels[:] = bytes(64)
+    show(latero, process)
     try:
         yield process
     finally:
@@ -159,25 +180,45 @@ def process(latero):
         line.close()
 
 
-def test_a_driver_that_falls_silent_is_not_waited_for(latero, process):
-    until(lambda: latero.board.at_rest and not latero.board.powered)
-    assert process.trips == 1
-    assert process.alive
+def show(latero, process):
     latero.board.levels[:] = 0
     process.board.levels[:] = bytes(64)
-    process.beat(time.monotonic_ns())
-    until(lambda: process.trips == 2 and latero.board.at_rest)
+    process.board.words[watchdog.BEAT] = time.monotonic_ns()
 
 
-def test_a_driver_that_takes_leave_has_it_end_without_a_word(latero, process):
-    for _ in range(20):
-        process.beat(time.monotonic_ns())
-        time.sleep(0.001)
-    trips, fulls = process.trips, latero.board.fulls
+def rests(latero):
+    return latero.board.at_rest and not latero.board.powered
+
+
+def test_a_driver_that_falls_silent_is_not_waited_for(latero, process):
+    words = process.board.words
+    until(lambda: rests(latero) and not words[watchdog.ACTING])
+    assert words[watchdog.TRIPS] == 1
+    assert process.alive
+    show(latero, process)
+    until(lambda: words[watchdog.TRIPS] == 2 and latero.board.at_rest)
+
+
+def test_a_driver_that_asks_for_rest_has_it_at_once_and_goes_on(latero, process):
+    process.rest()
+    begun_s = time.monotonic()
+    until(lambda: rests(latero) and not process.board.words[watchdog.ACTING])
+    assert process.alive
+    if time.monotonic() - begun_s < 0.045:  # the machine was quick
+        assert process.board.words[watchdog.TRIPS] == 0
+
+
+def test_a_driver_that_takes_leave_is_not_left_before_the_blades_rest(latero, process):
     process.close()
+    assert rests(latero)
     assert not process.alive
-    if not trips:  # the machine has let us beat in time
-        assert latero.board.fulls == fulls
+
+
+def test_a_watchdog_of_a_driver_that_showed_nothing_ends_without_a_word(latero, process):
+    process.board.words[watchdog.BEAT] = 0
+    fulls = latero.board.fulls
+    process.close()
+    assert latero.board.fulls == fulls
 
 
 def test_it_has_a_session_of_its_own_and_cannot_be_stopped_kindly(process):
@@ -197,7 +238,7 @@ frame = np.ones((8, 8))
 while True:
     device.read()
     device.write(frame)
-    if not device.conversation.blades.rests:
+    if device.taking:
         print(device.watchdog.process_id, flush=True)
     time.sleep(0.001)
 """
@@ -210,6 +251,6 @@ def test_a_driver_that_is_killed_leaves_the_blades_at_rest(latero):
         until(lambda: not latero.board.at_rest)
         ended = os.pidfd_open(watching)
         driver.kill()
-        until(lambda: latero.board.at_rest and not latero.board.powered)
+        until(lambda: rests(latero))
         assert select.select([ended], (), (), PATIENCE_S)[0]  # it ends by itself
         os.close(ended)

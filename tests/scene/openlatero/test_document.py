@@ -6,9 +6,8 @@ from typing import get_args
 
 from tests.scene.openlatero.files import scene, texture
 from vbraille.scene.openlatero import read_gen
-from vbraille.scene.openlatero.elements import MOST_BYTES, MOST_ELEMENTS
-from vbraille.scene.openlatero.groups import OPERATIONS
-from vbraille.scene.openlatero.reading import PATTERNS, TEXTURES
+from vbraille.scene.openlatero.elements import MOST_BYTES, MOST_ELEMENTS, PATTERNS, TEXTURES
+from vbraille.scene.openlatero.textures import OPERATIONS
 from vbraille.scene.patterns import AnyPattern
 
 PAGE = Path(__file__).parents[3] / "docs" / "converting.md"

@@ -98,35 +98,9 @@ DIFFERENT = {
         texture("Motion", f"<cue_type>superposed vibration bands</cue_type>{grating()}"),
         "its bands vibrate, as their name says",
     ),
-    "ripples over another shape": (
-        layers(
-            line(
-                stroke(
-                    9,
-                    ridge="<texture><enable>yes</enable><amplitude>0.6</amplitude>"
-                    "<nb_cycles>2</nb_cycles></texture>",
-                )
-            )
-        ),
-        "its ripples hide as much as they are up here",
-    ),
     "dots over another shape": (
         layers(line(stroke(4, "<dots><enable>yes</enable></dots>"))),
-        "its dots hide what is below them here",
-    ),
-    "a cue over another shape": (
-        layers(line(stroke(4, "<motion><cue>blend</cue></motion>"))),
-        "its cue hides a little more",
-    ),
-    "layers over another shape": (
-        layers(
-            f'<Pattern type="Group"><operation type="overwrite"/>{line()}{circle()}</Pattern>'
-        ),
-        "where its parts overlap it hides more",
-    ),
-    "a picture of textures over another shape": (
-        layers(texture("Combo", f'<operation type="max"/>{grating()}{grating(angle=90)}')),
-        "a texture hides all below it here",
+        "its layers hide a little more or less of what is below them here than there",
     ),
     "an inverted texture along a stroke": (
         line(stroke(9, f"<fill>{waves(inside='<invert>yes</invert>')}</fill>")),
@@ -166,7 +140,7 @@ DIFFERENT = {
     ),
     "a texture on top": (
         f'<Pattern type="Group"><operation>overwrite</operation>{circle()}{grating()}</Pattern>',
-        "a texture hides all below it here",
+        "its layers hide a little more or less",
     ),
     "an amplitude of 80 %": (
         grating(inside='<amplitude units="%">80</amplitude>'),

@@ -5,6 +5,7 @@ import pytest
 
 from tests.sessions.planning.test_protocols import load
 from tests.sessions.sittings import HEAD, MINI, WIDTHS
+from vbraille.devices.events import Button, Knob
 from vbraille.sessions.planning.loading import load_protocol
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.questionnaire import Item
@@ -106,9 +107,11 @@ def test_a_value_is_turned_until_it_is_equal(tmp_path):
     parse, asks, trial = ask(tmp_path, WIDTHS + more)
     assert (asks.steps("++-"), asks.steps("standard"), asks.steps("equal")) == (1, 0, None)
     assert asks.turned(2.95, 3) == 3.0
-    assert [asks.by_button(n) for n in (1, 2, 3, 4)] == ["-", "+", "equal", ""]
-    assert (asks.by_knob(2, 0.0), asks.by_knob(2, 1.0), asks.by_knob(1, 0.5)) == (0.5, 3.0, None)
     turned = trial.turned("dot_width_mm", 1.7)
+    lines = [asks.controlled(Button(number=n, pressed=True), turned) for n in (1, 2, 3, 4)]
+    assert lines == ["-", "+", "equal", ""]
+    lines = [asks.controlled(Knob(*turn), turned) for turn in ((2, 0.0), (2, 1.0), (1, 0.5))]
+    assert lines == ["-" * 12, "+" * 13, ""]
     assert asks.parse("equal", turned, None) == "1.7"
     with pytest.raises(ValueError, match="type"):
         parse("about equal")

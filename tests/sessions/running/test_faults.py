@@ -5,10 +5,10 @@ import re
 import pytest
 
 from tests.sessions.sittings import MINI, made
-from vbraille.devices import open_device
 from vbraille.engine.batch import BatchEngine
 from vbraille.engine.host import HostDiedError
 from vbraille.engine.record import Flag
+from vbraille.sessions.running import device
 
 KEPT = MINI + "[faults]\nrepeat = false\n"
 CAUSES = {
@@ -19,32 +19,34 @@ CAUSES = {
 }
 
 
+@pytest.fixture
+def driven(monkeypatch):
+    """What has the next session driven by an engine of a kind, which is polled every 100 ticks."""
+
+    def drive(kind):
+        monkeypatch.setattr(device, "BatchEngine", lambda *how: kind(*how, 100))
+
+    return drive
+
+
 def flagged(flag, first, stop):
     """What makes an engine some ticks of which could not be felt."""
 
     class Faulty(BatchEngine):
-        def __init__(self, *how):
-            super().__init__(*how)
-            self._watch, self.watcher.watch = self.watcher.watch, self._flag
-
-        def _flag(self, ticks):
+        def watch(self, ticks, display):
             at = (ticks["tick"] >= first) & (ticks["tick"] < stop)
             ticks["flags"][at] |= int(flag | Flag.UNFELT)
-            self._watch(ticks)
+            super().watch(ticks, display)
 
-    return maker(Faulty)
-
-
-def maker(kind):
-    """What makes an engine of a kind, which is polled every 100 ticks."""
-    return lambda spec, wanted: kind(open_device(spec, wanted), wanted.rate_hz, 100)
+    return Faulty
 
 
 @pytest.mark.parametrize(("flag", "what"), CAUSES.items())
 @pytest.mark.parametrize("repeats", [True, False])
-def test_one_tick_that_was_not_felt_marks_its_trial(tmp_path, flag, what, repeats):
+def test_one_tick_that_was_not_felt_marks_its_trial(tmp_path, driven, flag, what, repeats):
     sat = made(tmp_path, MINI if repeats else KEPT)
-    sat.sit(answers="simulated", hand="sweep:60", make_engine=flagged(flag, 850, 851))
+    driven(flagged(flag, 850, 851))
+    sat.sit(answers="simulated", hand="sweep:60")
     (fault,) = sat.of("fault")
     assert fault.trial == 1
     assert fault.data["tick"] == 850
@@ -53,7 +55,7 @@ def test_one_tick_that_was_not_felt_marks_its_trial(tmp_path, flag, what, repeat
     assert any(re.search(what, sentence) for sentence in sat.said)
 
 
-def test_an_engine_that_dies_is_started_again_and_its_trial_shown_again(tmp_path):
+def test_an_engine_that_dies_is_started_again_and_its_trial_shown_again(tmp_path, driven):
     class Dying(BatchEngine):
         deaths = 0
 
@@ -65,18 +67,20 @@ def test_an_engine_that_dies_is_started_again_and_its_trial_shown_again(tmp_path
             return ticks
 
     sat = made(tmp_path)
-    sat.sit(answers="simulated", hand="sweep:60", make_engine=maker(Dying))
+    driven(Dying)
+    sat.sit(answers="simulated", hand="sweep:60")
     assert sat.of("end")
     assert [event.data.get("why") for event in sat.of("run")] == [None, "fault"]
     assert [event.attempt for event in sat.of("cue") if event.trial == 1] == [1, 2]
 
 
-def test_no_trial_begins_while_the_device_takes_no_frames(tmp_path):
-    sat = made(tmp_path).sit(answers="simulated", make_engine=flagged(Flag.HELD, 0, 2500))
+def test_no_trial_begins_while_the_device_takes_no_frames(tmp_path, driven):
+    driven(flagged(Flag.HELD, 0, 2500))
+    sat = made(tmp_path).sit(answers="simulated")
     assert sat.of("cue")[0].t_s >= 2.4
 
 
-def test_the_array_rests_whatever_ends_the_session(tmp_path):
+def test_the_array_rests_whatever_ends_the_session(tmp_path, driven):
     rested = []
 
     class Watched(BatchEngine):
@@ -88,8 +92,9 @@ def test_the_array_rests_whatever_ends_the_session(tmp_path):
         raise KeyboardInterrupt
 
     sat = made(tmp_path)
+    driven(Watched)
     with pytest.raises(KeyboardInterrupt):
-        sat.sit(answers=answer, make_engine=maker(Watched))
+        sat.sit(answers=answer)
     assert rested
     assert not sat.of("end")
     sat.sit(answers="simulated")

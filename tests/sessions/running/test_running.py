@@ -210,7 +210,7 @@ def test_a_word_that_is_a_command_and_a_string_is_asked_about(tmp_path):
     protocol = MINI.replace('"ac", "ca", "aa"', '"go"').replace('"vbd"', '"stress2"')
     sat = made(tmp_path, protocol + "repeats = 2\n").sit(
         ("read:", "Go"), ("answer Go", "answer go"), ("read:", "go on"),
-        ("no answer", "command stop"),
+        ("no answer", "command nothing"), ("help: list", "command stop"),
     )  # fmt: skip
     assert shown(sat) == ["go", "go"]
     assert len(sat.of("answer")) == 1

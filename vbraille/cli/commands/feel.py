@@ -29,11 +29,10 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     from vbraille.cli.exploring import equipped, find_model, say_summary
     from vbraille.cli.printing import say
     from vbraille.errors import InputError
-    from vbraille.feeling.loading import check_fits, load_scene
+    from vbraille.pictures.loading import check_fits, load_scene
     from vbraille.reading.picture import Picture
     from vbraille.render import MODELS
     from vbraille.simulation.specs import is_simulated
-    from vbraille.translate import choose_table
 
     asked = MODELS[chosen["model"] or "stress2-8x8"]
     loaded = load_scene(chosen["file"], asked.style)
@@ -47,22 +46,15 @@ def command(ctx: click.Context, **chosen: Any) -> None:
             )
         model = find_model(ctx, device, asked)
         _check(loaded, model.display, chosen["y"], check_fits)
-        device.start(model)
-        if chosen["speech"]:
-            equipment.speak(loaded.scene.language or "en")
-        if chosen["also"]:
-            equipment.add_pins(chosen["also"], choose_table())
+        equipment.start(ctx, model, language=loaded.scene.language or "en")
         signals = equipment.signals
         picture = Picture(
             loaded,
             device,
             equipment.outputs,
-            rate_hz=chosen["rate"],
             y_mm=chosen["y"],
-            entering=chosen["say_entering"],
+            saying=2 if chosen["sounds"] else int(chosen["say_entering"]),
             sound=None if signals is None else signals.sound,
-            sounding=chosen["sounds"],
-            watched=True,
             goes=not still,
             attended=attended,
             zoom=chosen["zoom"],

@@ -29,7 +29,6 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     from vbraille.errors import InputError
     from vbraille.reading.game import DECK, Game, load_deck
     from vbraille.render import MODELS
-    from vbraille.translate import choose_table
 
     seed = random.randrange(1000) if chosen["seed"] is None else chosen["seed"]
     chosen["seed"] = ctx.params["seed"] = seed
@@ -44,14 +43,10 @@ def command(ctx: click.Context, **chosen: Any) -> None:
                 f"{model.display.name} goes along x only; cards need a device of two axes"
             )
         deck = load_deck(Path(chosen["deck"] or DECK), model.style, model.display)
-        device.start(model)
-        if chosen["speech"]:
-            equipment.speak("en")
-        if chosen["also"]:
-            equipment.add_pins(chosen["also"], choose_table())
+        equipment.start(ctx, model)
         game = Game(
             deck, device, equipment.outputs, players=chosen["players"], seed=seed,
-            rate_hz=chosen["rate"], attended=equipment.keyboard.attached,
+            attended=equipment.keyboard.attached,
         )  # fmt: skip
         game.say(f"seed: {seed}")
         game.begin()

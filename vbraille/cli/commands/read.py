@@ -82,16 +82,9 @@ def read(ctx: click.Context, number: int = 1) -> None:
         _take_options(ctx, kept)
         book = build_book(ctx, file)
         model = find_model(ctx, device, wanted)
-        if model.display is not wanted_display:
-            model = build_model(ctx, model, model.display.travel_mm)
-        if chosen["speech"]:
-            equipment.speak(_spoken(chosen["language"], book))
-        if chosen["also"]:
-            from vbraille.translate import choose_table
-
-            equipment.add_pins(chosen["also"], book.table or choose_table())
+        spoken = _spoken(chosen["language"], book)
+        equipment.start(ctx, model, language=spoken, table=book.table)
         width = chosen["cells"] or cells_per_line(model.style.geometry, model.display)
-        device.start(model)
 
         def save(style):
             settings = settings_of(ctx)
@@ -191,5 +184,4 @@ def _figures(ctx: click.Context, book: Any, device: Any) -> Any:
         None if in_container else Path(ctx.params["file"]).parent,
         lambda: device.model.style,
         lambda sentence: say(sentence, aside=True),
-        ctx.params["rate"],
     )

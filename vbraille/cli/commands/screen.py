@@ -28,25 +28,19 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     from vbraille.reading.brltty import Port
     from vbraille.reading.screen import Screen
     from vbraille.render import MODELS
-    from vbraille.translate import choose_table
 
     usual = MODELS[chosen["model"] or "stress2"]
     wanted = build_model(ctx, usual, usual.style.geometry.travel_mm)
-    wanted_display = wanted.on(wanted.style.geometry, chosen["rate"])
-    place = chosen["connect"] or chosen["listen"] or _usual_place()
+    folder = os.environ.get("XDG_RUNTIME_DIR") or Path.home()
+    place = chosen["connect"] or chosen["listen"] or f"{folder}/vbraille-screen"
     echo = chosen["echo"] or "none"
-    with equipped(ctx, wanted_display, hand=chosen["hand"], echo=echo) as equipment:
+    display = wanted.on(wanted.style.geometry, chosen["rate"])
+    with equipped(ctx, display, hand=chosen["hand"], echo=echo) as equipment:
         port = Port(place, connects=bool(chosen["connect"]))
         equipment.stack.callback(port.close)
         device = equipment.device
         model = find_model(ctx, device, wanted)
-        if model.display is not wanted_display:
-            model = build_model(ctx, model, model.display.travel_mm)
-        device.start(model)
-        if chosen["speech"]:
-            equipment.speak("en")
-        if chosen["also"]:
-            equipment.add_pins(chosen["also"], choose_table())
+        equipment.start(ctx, model)
         mode = "server" if chosen["connect"] else "client"
         equipment.say(f"start BRLTTY: brltty -b vr -d {mode}:{place}")
         if not port.local:
@@ -54,7 +48,3 @@ def command(ctx: click.Context, **chosen: Any) -> None:
         screen = Screen(port, device, equipment.outputs, model.style, equipment.keyboard)
         equipment.explore(ctx, screen)
     say_summary(device)
-
-
-def _usual_place() -> str:
-    return f"{os.environ.get('XDG_RUNTIME_DIR') or Path.home()}/vbraille-screen"

@@ -25,7 +25,7 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     """
     from pathlib import Path
 
-    from vbraille.cli.build import build_model, display_name
+    from vbraille.cli.build import display_name
     from vbraille.cli.exploring import equipped, find_model, refuse_terminal
     from vbraille.cli.settings import save_profile, settings_of
     from vbraille.knobs import profile_values
@@ -46,11 +46,8 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     with equipped(ctx, asked.display, hand=chosen["hand"]) as equipment:
         refuse_terminal(equipment.keyboard, "vbraille tune")
         device = equipment.device
-        found = find_model(ctx, device, asked)
-        model = build_model(ctx, found, found.display.travel_mm)
-        device.start(model)
-        if chosen["speech"]:
-            equipment.speak(chosen["language"] or "en")
+        model = find_model(ctx, device, asked)
+        equipment.start(ctx, model, language=chosen["language"] or "en")
         width = cells_per_line(model.style.geometry, model.display)
         reader = Reader(
             Layout(Book(source, table), width),

@@ -1,4 +1,10 @@
-"""A Latero on the network: its address, its socket, its watchdog process, and the talk with it."""
+"""A Latero on the network: the talk with it, its watchdog's process, and how both begin.
+
+Every request has a number, and only the newest answer counts: a late one is dropped, and a lost
+one is counted and not waited for. Frames are sent while `taking`. Whatever ends that (silence, a
+stop of this process, motor power that goes, `rest`, `close`), it is the watchdog that brings the
+blades to rest; then the Latero is asked again, with its blades at rest, until it answers so.
+"""
 
 from __future__ import annotations
 
@@ -10,39 +16,101 @@ import socket
 import subprocess
 import sys
 import time
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
+from urllib.parse import parse_qsl
 
+import numpy as np
+
+from vbraille.carriers import latero
 from vbraille.carriers.carrier import LATERO, LATERO_ARRAY
 from vbraille.devices.base import Device, Particulars
-from vbraille.devices.latero import watchdog
-from vbraille.devices.latero.conversation import (
-    NAME,
-    OPENING,
-    STALL_NS,
-    LateroConversation,
-    LateroStage,
-    power_off,
+from vbraille.devices.events import (
+    Back,
+    Button,
+    Notice,
+    Placed,
+    Placing,
+    Silent,
+    Unplugged,
+    WatchdogTripped,
 )
-from vbraille.devices.latero.watchdog import POWER
-from vbraille.devices.latero.wire import NO_IO, PORT, full_request
+from vbraille.devices.latero import watchdog as blade_watchdog
+from vbraille.devices.latero.watchdog import ACTING, AFTER, BEAT, POWER, TRIPS
+from vbraille.devices.latero.wire import (
+    BLADES,
+    BLADES_AT,
+    BUTTONS,
+    CONTROLLER,
+    ENCODER_ERRORS,
+    NO_IO,
+    PAGE,
+    PORT,
+    POWERED_OFF,
+    POWERED_ON,
+    READ,
+    REST,
+    WRITE,
+    Answer,
+    Foreign,
+    RawAnswer,
+    full_request,
+    number,
+    parse_answer,
+    raw_request,
+)
+from vbraille.display import Pose
 from vbraille.errors import DeviceError, InputError
 from vbraille.files import open_memory
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Mapping
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from vbraille.devices.events import Event
-    from vbraille.devices.latero.wire import Answer
-    from vbraille.display import Display, Pose
+    from vbraille.display import Display
 
+_MS: Final = 1_000_000
 _U16, _U32 = 0xFFFF, 0xFFFF_FFFF
-_EXAMPLE: Final = "latero:192.168.1.111"
-NO_POWER: Final = "none"
+DISPLAY: Final = replace(LATERO.under(LATERO_ARRAY), name="Latero", shown_near=True)
+# Frames must come more often than the watchdog takes the client for dead.
+LOWEST_RATE_HZ: Final = 40.0
+# A Latero answers in less; where it does not, the answer to the last frame is there.
+AHEAD_NS: Final = 300_000
+LATE_NS: Final = 5 * _MS  # an answer that took longer tells an old place
+SILENCE_NS: Final = 100 * _MS
+STALL_NS: Final = 40 * _MS  # after which the watchdog may act
+LOST_NS: Final = 250 * _MS  # after which an answer is not expected any more
+ASK_NS, RAW_NS = 5 * _MS, 20 * _MS  # how often it is asked without a frame, and about a register
+DEBOUNCE_NS: Final = 5 * _MS
+ANSWER_S, PROBE_S = 1.5, 0.2
+_TRIES: Final = 10  # to switch motor power on, before the reader is told
+# How many frames far blades go at most until the Latero answers again: as docs/wire-protocol.md
+# has it of a device, for a Latero shows what it gets at once.
+_PACE: Final = 2
+# The array's centre may be so far outside what it can reach, by the play of the arms.
+BEYOND_MM: Final = 10.0
+_MOST_ANSWERS: Final = 256  # that are taken at a time: those of a stopped client wait
+_START_S: Final = 10.0  # that the watchdog may take, on a machine with a lot to do
+_END_S: Final = 2.0  # and to bring blades to rest, or after a client that was killed
+
+# Notices, each by its code.
+POWER_OFF, PLACE, ENCODERS, VERSION = 1, 2, 3, 4
+UNPOWERED: Final = "its motor power is off; switch it on, and reading goes on"
+NO_SWITCH: Final = (
+    "how its motor power is switched is not known, so that it stays on; give power=ADDRESS"
+)
+WHERE: Final = (
+    "the near left corner of a Latero is the lower left one, with its third arm straight up: from "
+    "the array it goes straight away from you"
+)
+OTHER_VERSION: Final = (
+    "what answers now speaks another version of the Latero's protocol; reading goes on when the "
+    "Latero is back"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +134,7 @@ class LateroAddress:
 
     host: str
     port: int = PORT
-    offsets: tuple[int, int, int] | None = None
+    offsets: tuple[int, ...] | None = None
     power: int | None = 0
     trusted: bool = False
 
@@ -87,49 +155,41 @@ def parse_latero_address(text: str) -> LateroAddress:
     place, _, query = text.partition("?")
     host, colon, port = place.partition(":")
     if not re.fullmatch(r"[A-Za-z0-9._-]{1,253}", host):
-        raise InputError(f"latero: needs the name or the address of a host, as in {_EXAMPLE}")
-    if colon and not (re.fullmatch(r"[0-9]{1,5}", port) and 1 <= int(port) <= _U16):
-        raise InputError(f"port is {port!r}; it must be a whole number from 1 to {_U16}")
-    address = LateroAddress(host, int(port) if colon else PORT)
-    offsets, power, trusted = address.offsets, address.power, False
-    for option in filter(None, query.split("&")):
-        name, _, value = option.partition("=")
-        if name == "offsets":
-            offsets = _offsets(value)
-        elif name == "power":
-            power, trusted = _power(value), True
-        else:
-            raise InputError(f"there is no option {name!r} of a Latero; there is offsets and power")
-    return LateroAddress(host, address.port, offsets, power, trusted)
-
-
-def _offsets(text: str) -> tuple[int, int, int]:
-    found = re.fullmatch(r"(-?[0-9]{1,10}),(-?[0-9]{1,10}),(-?[0-9]{1,10})", text)
-    if found is None:
         raise InputError(
-            f"offsets are {text!r}; give three whole numbers, the counts of encoders 0, 1 and 2 "
+            "latero: needs the name or the address of a host, as in latero:192.168.1.111"
+        )
+    if colon and not 1 <= _whole(port) <= _U16:
+        raise InputError(f"port is {port!r}; it must be a whole number from 1 to {_U16}")
+    options = dict(parse_qsl(query, keep_blank_values=True))
+    offsets, power = options.pop("offsets", None), options.pop("power", None)
+    if options:
+        raise InputError(
+            f"there is no option {min(options)!r} of a Latero; there is offsets and power"
+        )
+    if offsets is not None and not re.fullmatch(r"-?[0-9]{1,10}(,-?[0-9]{1,10}){2}", offsets):
+        raise InputError(
+            f"offsets are {offsets!r}; give three whole numbers, the counts of encoders 0, 1 and 2 "
             f"at angle 0, such as offsets=4452,9928,2004"
         )
-    first, second, third = (int(count) & _U32 for count in found.groups())
-    return first, second, third
-
-
-def _power(text: str) -> int | None:
-    if text == NO_POWER:
-        return None
-    found = re.fullmatch(r"0x[0-9a-fA-F]{1,4}|[0-9]{1,5}", text)
-    register = int(text, 16 if text.startswith("0x") else 10) if found else -1
-    if not 0 <= register <= _U16:
+    if power not in (None, "none") and not 0 <= _whole(power) <= _U16:
         raise InputError(
-            f"power is {text!r}; give the controller's register that switches motor power, 0 to "
-            f"{_U16}, or {NO_POWER}"
+            f"power is {power!r}; give the controller's register that switches motor power, 0 to "
+            f"{_U16}, or none"
         )
-    return register
+    return LateroAddress(
+        host,
+        _whole(port) if colon else PORT,
+        None if offsets is None else tuple(int(count) & _U32 for count in offsets.split(",")),
+        None if power == "none" else _whole(power or "0"),
+        power is not None,
+    )
 
 
-# It takes a few hundredths of a second; this is a machine with a lot to do.
-_START_S: Final = 10.0
-_END_S: Final = 2.0
+def _whole(text: str) -> int:
+    """Number that a text is, of at most 16 bits or so; -1 if it is none."""
+    if re.fullmatch(r"0x[0-9a-fA-F]{1,4}", text):
+        return int(text, 16)
+    return int(text) if re.fullmatch(r"[0-9]{1,5}", text) else -1
 
 
 class WatchdogProcess:
@@ -137,12 +197,10 @@ class WatchdogProcess:
 
     Parameters
     ----------
-    request
-        FULL with all blades at rest, which the watchdog changes as it has to.
-    off
-        RAW that switches motor power off.
     socket
         Descriptor of a socket of the watchdog's own, connected to the Latero.
+    register
+        Register by which motor power is switched off.
     kept
         Further descriptors that stay open as long as the watchdog lives.
 
@@ -157,43 +215,24 @@ class WatchdogProcess:
         If it does not begin to watch.
     """
 
-    def __init__(self, request: bytes, off: bytes, socket: int, kept: Sequence[int] = ()) -> None:
-        memory = open_memory("vbraille-latero", watchdog.MEMORY_BYTES)
-        self._memory = mmap.mmap(memory, watchdog.MEMORY_BYTES)
-        self.board = watchdog.Board(self._memory)
-        self.board.full[:] = request
-        self.board.off[:] = off
+    def __init__(self, socket: int, register: int, *kept: int) -> None:
+        memory = open_memory("vbraille-latero", blade_watchdog.MEMORY_BYTES)
+        self.board = blade_watchdog.Board(mmap.mmap(memory, blade_watchdog.MEMORY_BYTES))
+        self.board.full[:] = full_request()
+        self.board.off[:] = raw_request(WRITE | CONTROLLER, register, POWERED_OFF)
         lifeline, self._lifeline = os.pipe()
-        try:
-            self._process = subprocess.Popen(
-                [
-                    sys.executable,
-                    "-I",
-                    "-S",
-                    watchdog.__file__,
-                    *map(str, (memory, lifeline, socket)),
-                ],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
-                pass_fds=(memory, lifeline, socket, *kept),
-                cwd="/",
-                start_new_session=True,  # what ends the driver's session does not end it
-            )
-        except OSError as error:
-            os.close(self._lifeline)
-            raise DeviceError(
-                f"the Latero's watchdog cannot be started: {error.strerror}"
-            ) from None
-        finally:
-            os.close(memory)
-            os.close(lifeline)
-        self._ended = os.pidfd_open(self._process.pid)
-        self._look = select.poll()
-        self._look.register(self._ended, select.POLLIN)
-        self._wait()
-
-    def _wait(self) -> None:
+        given = memory, lifeline, socket
+        self._process = subprocess.Popen(
+            [sys.executable, "-I", "-S", blade_watchdog.__file__, *map(str, given)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            pass_fds=(*given, *kept),
+            cwd="/",
+            start_new_session=True,  # what ends the driver's session does not end it
+        )
+        os.close(memory)
+        os.close(lifeline)
         assert self._process.stdout is not None
         with self._process.stdout as said:
             ready, _, _ = select.select([said], (), (), _START_S)
@@ -213,63 +252,98 @@ class WatchdogProcess:
     @property
     def alive(self) -> bool:
         """Tell whether the watchdog lives; this never waits."""
-        return not self._look.poll(0)
+        return self._process.poll() is None
 
-    @property
-    def trips(self) -> int:
-        """Tell how often the watchdog has begun to bring the blades to rest."""
-        return self.board.words[watchdog.TRIPS]
+    def rest(self) -> None:
+        """Have the blades brought to rest; nothing may be sent until that is done."""
+        self.board.words[ACTING] = 1
+        with suppress(OSError):  # a watchdog that has ended is found by the next read
+            os.write(self._lifeline, b"r")
 
-    def beat(self, now_ns: int) -> None:
-        """Say that the driver lives; this never waits."""
-        self.board.words[watchdog.BEAT] = now_ns
-
-    def close(self, *, all_done: bool = True) -> None:
-        """Have the watchdog end, and wait for that.
-
-        Parameters
-        ----------
-        all_done
-            Whether it has nothing to do; otherwise it brings the blades to rest before, and
-            switches motor power off.
-        """
-        if all_done:
-            self.board.words[watchdog.STATE] = watchdog.CLOSED
+    def close(self) -> None:
+        """Have the watchdog bring the blades to rest, if any was shown, and end; wait for it."""
         os.close(self._lifeline)
         try:
             self._process.wait(_END_S)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
-        os.close(self._ended)
 
 
-DISPLAY: Final = replace(LATERO.under(LATERO_ARRAY), name=NAME, shown_near=True)
-# A Latero answers in less; where it does not, the answer to the last frame is there.
-AHEAD_NS: Final = 300_000
-_ROOM_BYTES: Final = 256
-# Answers that are taken at a time: those of a stopped client wait in the socket.
-_MOST_ANSWERS: Final = 256
-_STEP_S: Final = 0.001
-_REST_STEPS: Final = 60
-_LEAVE_STEPS: Final = 200
+def not_before(sequence: int, other: int) -> bool:
+    """Tell whether a number is another one or comes after it, where numbers wrap at 16 bits."""
+    return (sequence - other) & _U16 < 0x8000
+
+
+class Requests:
+    """Requests that were sent, by their numbers; lost ones are not waited for.
+
+    Attributes
+    ----------
+    next : int
+        Number of the next request.
+    newest : int
+        Number of the newest request that was answered.
+    lost, late, unasked : int
+        How many requests were not answered; how many answers were dropped because they came late
+        or twice; and how many because nothing was asked by their number.
+    """
+
+    def __init__(self) -> None:
+        self.next = 0x4000
+        self.newest = self.next - 1
+        self.lost = self.late = self.unasked = 0
+        self._open: dict[int, int] = {}  # times of those that are not answered, by their numbers
+
+    def sent(self, now_ns: int) -> None:
+        """Note that the next request goes out now."""
+        for sequence, sent_ns in list(self._open.items()):
+            if now_ns - sent_ns <= LOST_NS:
+                break
+            del self._open[sequence]
+            self.lost += 1
+        self._open[self.next] = now_ns
+        self.next = (self.next + 1) & _U16
+
+    def answered(self, sequence: int, now_ns: int, late_ns: int = LATE_NS) -> int | None:
+        """Take the number of an answer; give when its request went out, or None to drop it."""
+        sent_ns = self._open.pop(sequence, None)
+        if sent_ns is None and (self.next - 1 - sequence) & _U16 >= 0x4000:
+            self.unasked += 1
+        elif sent_ns is None or now_ns - sent_ns > late_ns or not not_before(sequence, self.newest):
+            self.late += 1
+        else:
+            self.newest = sequence
+            return sent_ns
+        return None
 
 
 class LateroDevice(Device):
-    """A Latero that has answered; `openlatero` begins the talk.
+    """A Latero; `open_latero` makes it begin.
 
     Parameters
     ----------
     line
         Socket that is connected to the Latero, and does not block.
-    conversation
-        The talk with it, in which it has answered.
     watchdog
         The watchdog of it, which watches already.
-    kept
-        Socket that keeps other programs away; it is closed at the end.
+    address
+        What is known of it.
+    period_ns
+        Time between frames.
     now_ns, pause
         Clock, and function that waits for a number of seconds.
+
+    Attributes
+    ----------
+    answer : Answer or None
+        The last answer that counted.
+    requests : Requests
+        Requests and the answers to them.
+    foreign : dict
+        How many datagrams came that are no answer of a Latero, by what they are.
+    power : int or None
+        Register of the controller that switches motor power; None if it is never switched.
     """
 
     display = DISPLAY
@@ -279,188 +353,371 @@ class LateroDevice(Device):
     def __init__(
         self,
         line: socket.socket,
-        conversation: LateroConversation,
         watchdog: WatchdogProcess,
-        kept: socket.socket,
+        address: LateroAddress,
+        period_ns: int = _MS,
         now_ns: Callable[[], int] = time.monotonic_ns,
         pause: Callable[[float], None] = time.sleep,
     ) -> None:
-        self.conversation = conversation
-        self.watchdog = watchdog
-        self._line = line
-        self._kept = kept
-        self._now_ns = now_ns
-        self._pause = pause
-        self._room = bytearray(_ROOM_BYTES)
-        self._view = memoryview(self._room)
-        self._trips = watchdog.trips
-        self._called_ns = now_ns()
-        self._unsent = 0
-        self._copy()
+        self.watchdog, self.power = watchdog, address.power
+        self.requests = Requests()
+        self.answer: Answer | None = None
+        self.foreign = dict.fromkeys(Foreign, 0)
+        self.taking = False
+        self.placing = Placing.DONE if address.offsets else Placing.STOP
+        self._address, self._offsets = address, address.offsets
+        self._line, self._now_ns, self._pause = line, now_ns, pause
+        self._late_ns = max(LATE_NS, 2 * period_ns)
+        self._events: list[Event] = []
+        self._pose: Pose | None = None
+        self._room = bytearray(256)
+        self._full = full_request()
+        self._blades = memoryview(self._full)[BLADES_AT : BLADES_AT + BLADES]
+        self._levels = np.frombuffer(self._blades, np.uint8).reshape(8, 8)
+        self._at = np.full((8, 8), float(REST))  # levels before they are rounded
+        self._behind, self._may_go = 0, _PACE  # by how many frames they are behind, and may go on
+        self._frames = self.requests.next, self.requests.next  # numbers of the last two frames
+        self._called_ns = self._heard_ns = now_ns()
+        self._asked_ns = self._raw_ns = self._called_ns - SILENCE_NS
+        self._since = self.requests.next  # the first request with all blades at rest
+        self._raw: bytearray | None = None  # RAW that is repeated
+        self._register: RawAnswer | None = None
+        self._probed = False  # whether it is known how motor power is switched
+        # Power is switched on only where we switched it off: at the start, and after a rest.
+        self._may_power, self._tries = True, 0
+        self._away: Event | None = None  # why nothing can be read
+        self._told_version = False
+        self._held = self._pressed = 0  # buttons, a bit each: as they are read, and debounced
+        self._held_ns = 0
+        self._reconnections = self._unsent = self._trips = 0
+
+    def greet(self) -> None:
+        """Ask until the Latero has answered, with its blades at rest.
+
+        Raises
+        ------
+        DeviceError
+            If it does not.
+        """
+        if not self._until(lambda: self.answer and self.answer.interface != NO_IO, ANSWER_S):
+            raise self._no_answer()
+        assert self.answer is not None
+        if self.power is not None and not self._address.trusted:
+            # Motor power is switched where the status word is, which each answer has.
+            self._raw = raw_request(READ | CONTROLLER, self.power)
+            self._until(lambda: self._register is not None, PROBE_S)
+            content = 0 if self._register is None else self._register.data & ~PAGE
+            if not content or content != self.answer.controller & ~PAGE:
+                self.power = None
+                self._events.append(Notice(POWER_OFF, NO_SWITCH))
+            self._raw = None
+        self.watchdog.board.words[POWER] = self.power is not None
+        self._probed = True
+        self._since = self.requests.next
+        if self.placing is Placing.STOP:
+            self._events.append(Notice(PLACE, WHERE))
+        # Where answers are lost on the way, it will be seen.
+        self._until(lambda: self.taking or self._tries > 0, ANSWER_S)
+
+    def _until(self, true: Callable[[], object], seconds: float) -> bool:
+        """Ask until something is true; tell whether it is, within so many seconds."""
+        until_ns = self._now_ns() + round(seconds * 1e9)
+        while not true():
+            if self._now_ns() > until_ns:
+                return False
+            self._pause(0.001)
+            self.read()
+        return True
+
+    def _no_answer(self) -> DeviceError:
+        where = self._address.text
+        if self.answer is not None:
+            return DeviceError(
+                f"the I/O interface of the Latero at {where} is unplugged or has no power; plug it "
+                f"in, and try again"
+            )
+        if self.foreign[Foreign.VERSION]:
+            return DeviceError(
+                f"the Latero at {where} speaks another version of its protocol than 1.1, which is "
+                f"the only one that vbraille knows; it cannot be read on"
+            )
+        if self.foreign[Foreign.OTHER]:
+            return DeviceError(f"what answers at {where} is no Latero; choose another host or port")
+        if self.requests.unasked:
+            return DeviceError(
+                f"the Latero at {where} does not repeat the numbers of requests, so that a late "
+                f"answer cannot be told from a new one; it cannot be read on"
+            )
+        return DeviceError(
+            f"no Latero answers at {where}; see that it is on and on this network, or choose "
+            f"another host or port"
+        )
+
+    @property
+    def particulars(self) -> Particulars | None:  # type: ignore[override]
+        """Versions by its status words, and where its encoders are at angle 0."""
+        if self.answer is None:
+            return None
+        controller, interface = (
+            f"{status >> 8 & 0xF}.{status >> 4 & 0xF}"
+            for status in (self.answer.controller, self.answer.interface)
+        )
+        where = "its offsets are not known before it is shown its lower left corner"
+        if self._offsets is not None:
+            where = f"offsets={','.join(map(str, self._offsets))}"
+        return Particulars(
+            f"latero, controller {controller}, I/O interface {interface}, {where}", buttons=2
+        )
+
+    @property
+    def watchdog_trips(self) -> int:  # type: ignore[override]
+        """Number of times that no frame was sent in time, and the watchdog acted."""
+        return self._trips
+
+    @property
+    def tripped_ms(self) -> float | None:  # type: ignore[override]
+        """Time from the last request to when the watchdog last tripped."""
+        return self.watchdog.board.words[AFTER] / _MS if self._trips else None
 
     def set_zero(self) -> None:
         """Take the place for the lower left corner with the third arm straight up."""
-        self.conversation.set_zero(self._now_ns())
-        self._copy()
-        self._describe()
+        if self.answer is not None:
+            self._place_by(latero.offsets_at(self.answer.encoders))
 
-    def take_events(self) -> Sequence[Event]:
-        """Events since the last call, each kind once a second at most."""
-        return self.conversation.take_events(self._now_ns())
+    def take_events(self) -> list[Event]:
+        """Events since the last call."""
+        events, self._events = self._events, []
+        return events
 
     def counts(self) -> Mapping[str, int]:
         """Counts of what went wrong so far, by name."""
-        conversation = self.conversation
-        numbering = conversation.numbering
+        requests = self.requests
         return {
             "frames not sent": self._unsent,
-            "requests not answered": numbering.lost,
-            "late answers": numbering.late,
-            "doubled answers": numbering.doubled,
-            "foreign datagrams": conversation.foreign + numbering.unasked,
-            "watchdog trips": self.watchdog.trips,
-            "reconnections": conversation.reconnections,
+            "requests not answered": requests.lost,
+            "late or doubled answers": requests.late,
+            "foreign datagrams": sum(self.foreign.values()) + requests.unasked,
+            "watchdog trips": self._trips,
+            "reconnections": self._reconnections,
         }
 
     def read(self) -> Pose | None:
-        """Newest sample since the last call, or None; this never waits.
+        """Newest pose since the last call, or None; this never waits.
 
         Raises
         ------
         DeviceError
             If the watchdog has ended, without which no person may read on a Latero.
         """
-        now_ns = self._now_ns()
         if not self.watchdog.alive:
             raise DeviceError(
-                f"the watchdog of the {NAME} has ended, and without it no person may read; the "
-                f"blades go to rest, so begin again"
+                "the watchdog of the Latero has ended, and without it no person may read; the "
+                "blades go to rest, so begin again"
             )
-        self._step(now_ns)
-        self._copy()
-        return self.conversation.take_pose()
+        now_ns = self._now_ns()
+        self._mind_watchdog(now_ns)
+        with suppress(OSError):  # nothing has come, or no Latero is there
+            for _ in range(_MOST_ANSWERS):
+                size = self._line.recv_into(self._room)
+                self._hear(memoryview(self._room)[:size], now_ns)
+        if self._away is None and self.answer and now_ns - self._heard_ns >= SILENCE_NS:
+            self._lose(Silent(), now_ns)
+        # What is felt is not held by asking for places: the watchdog takes it to rest.
+        resting = not self.taking or self._levels.min() == REST
+        if resting and now_ns - self._asked_ns >= ASK_NS:
+            self._say(self._full, now_ns)
+        if self._raw is not None and now_ns - self._raw_ns >= RAW_NS:
+            self._raw_ns = now_ns
+            self._say(self._raw, now_ns)
+        pose, self._pose = self._pose, None
+        return pose
 
     def ask(self) -> None:
         """Ask where the array is: the answer to the last frame would be a whole tick old."""
         now_ns = self._now_ns()
-        self._mind_stall(now_ns)
-        self.conversation.ask(now_ns)
-        self._send_due(now_ns)
+        self._mind_watchdog(now_ns)
+        if self.taking:
+            self._say(self._full, now_ns)
 
     def rest(self) -> None:
-        """Bring the blades to rest, which takes 20 ms: a frame of rest would be a jump."""
-        self.conversation.rest(self._now_ns())
-        for _ in range(_REST_STEPS):
-            self._step(self._now_ns())
-            if self.conversation.blades.rests:
-                return
-            self._pause(_STEP_S)
+        """Have the blades brought to rest along a ramp: a frame of rest would be a jump."""
+        self._stop()
 
-    def _send(self, frame: NDArray[np.float64]) -> None:
+    def _send(self, frame: NDArray[np.float64]) -> bool:
+        """Go towards deflections.
+
+        Where the Latero has not answered what was sent a frame ago it may not have got that:
+        levels go on by two frames at most, and what comes after is caught up with.
+        """
         now_ns = self._now_ns()
-        self._mind_stall(now_ns)
-        self.conversation.show(frame, now_ns)
-        self._send_due(now_ns)
-        self.acknowledged_ns = None
+        self._mind_watchdog(now_ns)
+        if not self.taking:
+            return False
+        before, last = self._frames
+        if not_before(self.requests.newest, before):
+            self._may_go = _PACE
+        self._behind += 1
+        steps = min(self._behind, self._may_go)
+        self._at += (REST - REST * frame - self._at) * (steps / self._behind)
+        self._levels[:] = np.clip(np.rint(self._at), 0, REST)
+        self._behind -= steps
+        self._may_go -= steps
+        self._frames = last, self.requests.next
+        return self._say(self._full, now_ns)
 
-    def _mind_stall(self, now_ns: int) -> None:
-        """See whether this process was stopped for so long that the watchdog may have acted."""
+    def _mind_watchdog(self, now_ns: int) -> None:
+        """See whether the watchdog has acted, or may have, while this process was stopped."""
         stopped = now_ns - self._called_ns >= STALL_NS
         self._called_ns = now_ns
-        trips = self.watchdog.trips
-        if trips != self._trips or (stopped and not self.conversation.blades.rests):
-            self._trips = trips
-            self.watchdog.beat(now_ns)
-            self.conversation.stall(self.watchdog.board.levels, trips, now_ns)
+        words = self.watchdog.board.words
+        if stopped or words[ACTING]:
+            self._heard_ns = now_ns  # no request went out meanwhile
+        if words[TRIPS] != self._trips:
+            self._trips = words[TRIPS]
+            self._events.append(WatchdogTripped(self._trips))
+            self._stop()
+        elif stopped and self.taking and self._levels.min() < REST:
+            self._stop()
 
-    def _hear(self, now_ns: int) -> None:
-        for _ in range(_MOST_ANSWERS):
-            try:
-                size = self._line.recv_into(self._room)
-            except OSError:  # nothing has come, or no Latero is there
-                return
-            self.conversation.hear(self._view[:size], now_ns)
-            if self.conversation.numbering.caught_up:  # what may be left is doubled or late
-                return
+    def _say(self, request: bytearray, now_ns: int) -> bool:
+        """Send a request, unless the watchdog is at work; tell whether it went out."""
+        board = self.watchdog.board
+        if board.words[ACTING]:
+            return False
+        # The watchdog knows where the blades are before they are there.
+        board.levels[:] = self._blades
+        if self.taking:
+            board.words[BEAT] = now_ns
+        if request is self._full:
+            self._asked_ns = now_ns
+        number(request, self.requests.next)
+        try:
+            self._line.send(request)
+        except OSError:
+            self._unsent += 1
+            return False
+        self.requests.sent(now_ns)
+        return True
 
-    def _send_due(self, now_ns: int) -> None:
-        conversation, board = self.conversation, self.watchdog.board
-        while (request := conversation.due()) is not None:
-            # The watchdog knows where the blades are before they are there.
-            board.levels[:] = conversation.blades.view
-            self.watchdog.beat(now_ns)
-            try:
-                self._line.send(request)
-            except OSError:
-                self._unsent += 1
-                conversation.refused()
-                return
-            conversation.sent()
+    def _stop(self, *, may_power: bool = True) -> None:
+        """Have the watchdog bring the blades to rest; what comes after that fades in."""
+        self.taking, self._may_power, self._tries, self._raw = False, may_power, 0, None
+        self._levels[:] = REST
+        self._at[:] = REST
+        self._behind = 0
+        self._since = self.requests.next
+        self.watchdog.rest()
 
-    def _copy(self) -> None:
-        """Copy the values that `Device` promises from the conversation."""
-        conversation = self.conversation
-        self.rested = conversation.rested
-        self.taking = conversation.taking
-        self.placing = conversation.place.placing
-        self.acknowledged_ns = conversation.acknowledged_ns
-        self.watchdog_trips = self._trips
-        if self.particulars is None:
-            self._describe()
+    def _lose(self, why: Event, now_ns: int) -> None:
+        """Note that the Latero, or its I/O interface, is not there any more."""
+        if self._away is None:
+            self._events.append(why)
+            self._stop()
+            self._press(0, now_ns)  # no hand holds the buttons of a device that is away
+        self._away = why
 
-    def _describe(self) -> None:
-        answer = self.conversation.answer
-        if answer is not None:
-            self.particulars = _particulars(answer, self.conversation.place.offsets)
+    def _hear(self, datagram: memoryview, now_ns: int) -> None:
+        """Take a datagram that has come."""
+        answer = parse_answer(datagram)
+        if isinstance(answer, Foreign):
+            self.foreign[answer] += 1
+            if answer is Foreign.VERSION and self._away and not self._told_version:
+                self._told_version = True
+                self._events.append(Notice(VERSION, OTHER_VERSION))
+            return
+        # Where no frame is made of it, an old answer says what is to be known as well as a new one.
+        late_ns = self._late_ns if self.taking and isinstance(answer, Answer) else SILENCE_NS
+        sent_ns = self.requests.answered(answer.sequence, now_ns, late_ns)
+        if sent_ns is None:
+            return
+        self._heard_ns = now_ns
+        if isinstance(answer, RawAnswer):
+            self._register = answer
+            return
+        before, self.answer = self.answer, answer
+        if answer.sequence == self._frames[1]:
+            self.acknowledged_ns = now_ns - sent_ns
+        if answer.interface == NO_IO:
+            self._lose(Unplugged(), now_ns)
+            self._place_by(None)  # encoders that had no power count from anywhere
+            return
+        if self._away is not None:
+            self._away, self._told_version = None, False
+            self._reconnections += 1
+            self._events.append(Back())
+        if before is not None and answer.interface & ~before.interface & ENCODER_ERRORS:
+            self._events.append(
+                Notice(ENCODERS, "an encoder has lost steps; show its near left corner")
+            )
+        self._mind_power(answer)
+        held = sum((not answer.dio_in & mask) << bit for bit, mask in enumerate(BUTTONS))
+        if held != self._held:
+            self._held, self._held_ns = held, now_ns
+        elif now_ns - self._held_ns >= DEBOUNCE_NS:
+            self._press(held, now_ns)
+        self._locate(answer, sent_ns)
 
-    def _step(self, now_ns: int) -> None:
-        """Hear what has come, see what time it is, and say what is due."""
-        self._mind_stall(now_ns)
-        self._hear(now_ns)
-        self.conversation.tend(now_ns)
-        self._send_due(now_ns)
+    def _mind_power(self, answer: Answer) -> None:
+        """Show frames once the blades are at rest and have power, and as long as they have."""
+        off = answer.controller & (POWERED_OFF | POWERED_ON) == POWERED_OFF
+        if self.taking:
+            if off:
+                self._stop(may_power=False)  # it was switched off elsewhere
+            return
+        resting = not_before(answer.sequence, self._since) and self._probed
+        if not resting or self.watchdog.board.words[ACTING]:
+            return
+        if not off:
+            self.taking, self._raw = True, None
+            self.rested += 1
+            return
+        if self._may_power and self.power is not None:
+            self._raw = raw_request(WRITE | CONTROLLER, self.power, POWERED_ON)
+        self._tries += 1
+        if self._tries == (_TRIES * RAW_NS // ASK_NS if self._raw else 1):
+            self._events.append(Notice(POWER_OFF, UNPOWERED))
+
+    def _press(self, held: int, now_ns: int) -> None:
+        """Tell of buttons that were pressed or let go."""
+        for bit in range(len(BUTTONS)):
+            if (held ^ self._pressed) >> bit & 1:
+                self._events.append(Button(bit + 1, bool(held >> bit & 1), at_ns=now_ns))
+        self._held = self._pressed = held
+
+    def _locate(self, answer: Answer, sent_ns: int) -> None:
+        """Make a pose of the encoders; where the arms cannot be, it is not known any more."""
+        if self._offsets is None:
+            return
+        joints = latero.joints_of(answer.encoders, self._offsets)
+        x_mm, y_mm, theta_rad = latero.pose_at(*joints)
+        within_mm = [min(max(x_mm, 0.0), latero.WIDTH_MM), min(max(y_mm, 0.0), latero.HEIGHT_MM)]
+        if max(abs(x_mm - within_mm[0]), abs(y_mm - within_mm[1])) > BEYOND_MM:
+            self._place_by(None)
+            return
+        self._pose = Pose(sent_ns, within_mm[0] - DISPLAY.span_mm / 2, within_mm[1], theta_rad)
+
+    def _place_by(self, offsets: tuple[int, ...] | None) -> None:
+        """Take the encoders' counts at angle 0; None if they are not known any more."""
+        self._offsets = offsets
+        placing = Placing.STOP if offsets is None else Placing.DONE
+        if placing is self.placing:
+            return
+        self.placing = placing
+        self._events.append(Placed(placing))
+        if placing is Placing.STOP:
+            self._events.append(Notice(PLACE, WHERE))
 
     def _release(self) -> None:
-        conversation = self.conversation
         try:
-            silent = conversation.stage is LateroStage.SILENT
-            conversation.leave(self._now_ns())
-            for _ in range(_LEAVE_STEPS):
-                self._step(self._now_ns())
-                if conversation.left or (silent and conversation.blades.rests):
-                    break
-                self._pause(_STEP_S)
+            if not self.watchdog.alive:  # then it is for this process to do
+                act = blade_watchdog.speaking(self.watchdog.board, self._line.fileno())
+                act.begin(self._now_ns())
+                while act.acting:
+                    act.step(self._now_ns())
+                    self._pause(0.001)
+            self.watchdog.close()
         finally:
-            self.watchdog.close(all_done=conversation.left)
             self._line.close()
-            self._kept.close()
-
-
-def _particulars(answer: Answer, offsets: Sequence[int] | None) -> Particulars:
-    """Tell what the Latero's status words say, and where its encoders are at angle 0."""
-    where = "its offsets are not known before it is shown its lower left corner"
-    if offsets is not None:
-        where = f"offsets={','.join(map(str, offsets))}"
-    return Particulars(
-        protocol=(
-            f"latero, controller {_version(answer.controller)}, "
-            f"I/O interface {_version(answer.interface)}, {where}"
-        ),
-        buttons=2,
-    )
-
-
-def _version(status: int) -> str:
-    """Version and revision that a status word tells."""
-    return f"{status >> 8 & 0xF}.{status >> 4 & 0xF}"
-
-
-ANSWER_S: Final = 1.5
-# The watchdog of a client that was killed has a second to bring the blades to rest.
-_ALONE_S: Final = 2.0
-_LOOK_S: Final = 0.001
-# Frames must come more often than the watchdog takes the client for dead.
-LOWEST_RATE_HZ: Final = 40.0
 
 
 def open_latero(
@@ -495,55 +752,29 @@ def open_latero(
             f"the Latero's watchdog takes it to rest when frames are 50 ms apart, and {rate_hz:g} "
             f"a second are asked for; choose {setting('rate')} {LOWEST_RATE_HZ:g} or more"
         )
-    found = _resolve(place)
-    opened: list[socket.socket] = []
-    watchdog = None
-    try:
-        kept = _keep_others_away(place, found, pause)
-        opened.append(kept)
-        line = _connect(place, found)
-        opened.append(line)
-        spare = _connect(place, found)  # the watchdog's
-        opened.append(spare)
-        conversation = LateroConversation(
-            now_ns(),
-            period_ns=round(1e9 / rate_hz),
-            half_span_mm=DISPLAY.span_mm / 2,
-            offsets=place.offsets,
-            power=place.power,
-            trusted=place.trusted,
-        )
-        register = place.power or 0
-        watchdog = WatchdogProcess(
-            bytes(full_request()), bytes(power_off(register)), spare.fileno(), [kept.fileno()]
-        )
-        spare.close()
-        watchdog.beat(now_ns())
-        device = LateroDevice(line, conversation, watchdog, kept, now_ns, pause)
-        _greet(device, place, now_ns, pause)
-        watchdog.board.words[POWER] = conversation.power is not None
-    except BaseException:  # a signal's exception, too
-        if watchdog is not None:
-            watchdog.close()
-        for one in opened:
-            one.close()
-        raise
-    return device
-
-
-def _resolve(place: LateroAddress) -> tuple[str, int]:
-    """Address of the host; the Latero knows IPv4 only."""
-    try:
+    try:  # the Latero knows IPv4 only
         found = socket.getaddrinfo(place.host, place.port, socket.AF_INET, socket.SOCK_DGRAM)
     except (OSError, UnicodeError):
         raise InputError(
             f"there is no host {place.host}; give the Latero's name or address"
         ) from None
-    return str(found[0][4][0]), place.port
+    peer = found[0][4]
+    with ExitStack() as opened:
+        kept = opened.enter_context(_keep_others_away(place, f"{peer[0]}:{peer[1]}", pause))
+        line, spare = (opened.enter_context(_connect(place, peer)) for _ in range(2))
+        # The first and the last are the watchdog's from now on, and stay open as long as it lives.
+        watchdog = WatchdogProcess(spare.fileno(), place.power or 0, kept.fileno())
+        opened.callback(watchdog.close)
+        device = LateroDevice(line, watchdog, place, round(1e9 / rate_hz), now_ns, pause)
+        device.greet()
+        opened.pop_all()
+    kept.close()
+    spare.close()
+    return device
 
 
 def _keep_others_away(
-    place: LateroAddress, found: tuple[str, int], pause: Callable[[float], None]
+    place: LateroAddress, name: str, pause: Callable[[float], None]
 ) -> socket.socket:
     """Socket that one program on this computer can have for a Latero, as long as it lives.
 
@@ -553,28 +784,22 @@ def _keep_others_away(
         If another program has it.
     """
     kept = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
-    name = f"\0vbraille-latero-{found[0]}:{found[1]}"
-    for left in reversed(range(round(_ALONE_S / 0.05))):
-        try:
-            kept.bind(name)
-        except OSError:
-            if left:
-                pause(0.05)
-                continue
-            kept.close()
-            raise DeviceError(
-                f"another program on this computer drives the Latero at {place.text}; end it, and "
-                f"try again"
-            ) from None
-        break
-    return kept
+    for _ in range(round(_END_S / 0.05)):  # as the watchdog of a client that was killed has
+        with suppress(OSError):
+            kept.bind(f"\0vbraille-latero-{name}")
+            return kept
+        pause(0.05)
+    kept.close()
+    raise DeviceError(
+        f"another program on this computer drives the Latero at {place.text}; end it, and try again"
+    )
 
 
-def _connect(place: LateroAddress, found: tuple[str, int]) -> socket.socket:
+def _connect(place: LateroAddress, peer: tuple) -> socket.socket:
     """Socket that hears only the Latero."""
     line = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
-        line.connect(found)
+        line.connect(peer)
     except OSError as error:
         line.close()
         raise DeviceError(
@@ -582,56 +807,3 @@ def _connect(place: LateroAddress, found: tuple[str, int]) -> socket.socket:
         ) from None
     line.setblocking(False)
     return line
-
-
-def _greet(
-    device: LateroDevice,
-    place: LateroAddress,
-    now_ns: Callable[[], int],
-    pause: Callable[[float], None],
-) -> None:
-    """Ask until the Latero has answered, with its blades at rest.
-
-    Raises
-    ------
-    DeviceError
-        If it does not.
-    """
-    conversation = device.conversation
-    begun_ns = now_ns()
-    while True:
-        device.read()
-        answer = conversation.answer
-        if conversation.stage not in OPENING and conversation.stage is not LateroStage.RAMPING:
-            return
-        if now_ns() - begun_ns > ANSWER_S * 1e9:
-            if conversation.stage is LateroStage.RAMPING:
-                return  # answers are lost on the way, and it will be seen
-            if answer is not None and answer.interface == NO_IO:
-                raise DeviceError(
-                    f"the I/O interface of the Latero at {place.text} is unplugged or has no "
-                    f"power; plug it in, and try again"
-                )
-            raise _no_answer(conversation, place)
-        pause(_LOOK_S)
-
-
-def _no_answer(conversation: LateroConversation, place: LateroAddress) -> DeviceError:
-    if conversation.other_version:
-        return DeviceError(
-            f"the Latero at {place.text} speaks another version of its protocol than 1.1, which is "
-            f"the only one that vbraille knows; it cannot be read on"
-        )
-    if conversation.numbering.unasked and not conversation.foreign:
-        return DeviceError(
-            f"the Latero at {place.text} does not repeat the numbers of requests, so that a late "
-            f"answer cannot be told from a new one; it cannot be read on"
-        )
-    if conversation.foreign:
-        return DeviceError(
-            f"what answers at {place.text} is no Latero; choose another host or port"
-        )
-    return DeviceError(
-        f"no Latero answers at {place.text}; see that it is on and on this network, or choose "
-        f"another host or port"
-    )

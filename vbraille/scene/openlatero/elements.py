@@ -1,59 +1,48 @@
-"""Elements of OpenLatero's files: trees of XML whose values are read one by one, leniently.
+"""Elements of OpenLatero's files, read by the table leniently.
 
-Whatever is not asked for by the time that all is read was not understood, and is said.
+What is not understood, or is taken otherwise, is said.
 """
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
-from vbraille.scene.measures import MOST_MM
-from vbraille.wording import count, nearest, printable
+from vbraille.scene.measures import LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, MOST_MM
+from vbraille.scene.openlatero.table import rows_of
+from vbraille.scene.signals import MOST_SIGNALS
+from vbraille.wording import nearest, printable
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping
-    from typing import Any
+    from collections.abc import Iterable
+    from pathlib import Path
 
     from vbraille.scene.measures import Point
+    from vbraille.scene.openlatero.table import Row
+    from vbraille.scene.patterns import AnyPattern
+    from vbraille.scene.signals import AnySignal
 
-
+MOST_BYTES = 20_000_000
+MOST_ELEMENTS = 200_000
+_MOST_FAULTS = 5  # of broken XML that are said
 _MOST_LINES = 5  # that one remark names, when it holds for many places
 
 
-@dataclass(slots=True)
-class Remarks:
-    """Remarks on places of a file, as they come."""
-
-    _lines: dict[tuple[str, str], list[int]] = field(default_factory=dict)
-
-    def add(self, line: int, element: str, text: str) -> None:
-        """Say something about an element.
-
-        Parameters
-        ----------
-        line
-            Line at which it begins, from 1.
-        element
-            What it is, such as "Circle".
-        text
-            The rest of the sentence.
-        """
-        self._lines.setdefault((element, text), []).append(line)
+class Remarks(dict[tuple[str, str], list[int]]):
+    """Lines of a file by the element, such as "Circle", and the sentence that is said about it."""
 
     def listed(self) -> tuple[str, ...]:
         """All remarks, in the order of their first lines; what holds at many places is said once.
 
-        >>> remarks = Remarks()
-        >>> for line in (9, 4):
-        ...     remarks.add(line, "Circle", "its icon is ignored")
-        >>> remarks.listed()
+        >>> Remarks({("Circle", "its icon is ignored"): [9, 4]}).listed()
         ('line 4, Circle: its icon is ignored (and line 9)',)
         """
-        found = sorted((sorted(set(lines)), *key) for key, lines in self._lines.items())
+        found = sorted((sorted(set(lines)), *key) for key, lines in self.items())
         return tuple(
             f"line {lines[0]}, {element}: {text}{_others(lines[1:])}"
             for lines, element, text in found
@@ -64,108 +53,196 @@ def _others(lines: list[int]) -> str:
     """Other lines for which a remark holds."""
     if not lines:
         return ""
-    named = ", ".join(map(str, lines[:_MOST_LINES]))
     more = len(lines) - _MOST_LINES
     rest = f" and {more} more" if more > 0 else ""
+    named = ", ".join(map(str, lines[:_MOST_LINES]))
     return f" (and line{'s' if len(lines) > 1 else ''} {named}{rest})"
 
 
-MOST_BYTES = 20_000_000
-MOST_ELEMENTS = 200_000
-DEEPEST = 100
-_MOST_FAULTS = 5  # of broken XML that are said one by one
-
-
-def read_tree(content: bytes, name: str, remarks: Remarks) -> GenElement:
-    """Read a text of XML as elements.
-
-    Nothing is looked up elsewhere, and no entity is expanded.
+@dataclass(frozen=True, slots=True)
+class Context:
+    """Facts of a file while it is read.
 
     Parameters
     ----------
-    content
-        The text.
-    name
-        Name of its file, for messages.
+    folder
+        Folder of the file, from which the names of pictures are seen.
+    as_shown
+        Whether the picture is to be as OpenLatero shows it, where that is not what the file says.
     remarks
-        Where it is said what was broken.
-
-    Returns
-    -------
-    GenElement
-        The root.
-
-    Raises
-    ------
-    InputError
-        If it is no XML, declares entities, or is far too large or deep.
+        What is said about the file.
+    signals
+        Signals of the scene, as they come.
+    made
+        Patterns that were made, with the lines of their elements, by their ids.
     """
-    from lxml import etree
 
-    if b"<!ENTITY" in content:
-        raise _entities(name)
-    # Broken files are read as far as they can be; what was broken is said.
-    parser = etree.XMLParser(
-        recover=True, resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False,
-        remove_comments=True, remove_pis=True,
-    )  # fmt: skip
-    try:
-        root: Any = etree.fromstring(content, parser)
-    except (etree.XMLSyntaxError, ValueError):
-        root = None
-    if root is None:
-        raise InputError(f"{name} is no XML; give a file that OpenLatero wrote")
-    declared: Any = root.getroottree().docinfo.internalDTD
-    if declared is not None and any(True for _ in declared.iterentities()):
-        raise _entities(name)
-    if root.xpath("count(//*)") > MOST_ELEMENTS:
-        raise InputError(f"{name} has more than {MOST_ELEMENTS} elements; split the picture in two")
-    _say_faults(parser, remarks)
-    return _elements(root, name, remarks)
+    folder: Path
+    as_shown: bool
+    remarks: Remarks = field(default_factory=Remarks)
+    signals: dict[str, AnySignal] = field(default_factory=dict)
+    made: dict[int, tuple[AnyPattern, int]] = field(default_factory=dict)
 
+    def signal(self, name: str, signal: AnySignal) -> str:
+        """Name of a signal, which is called by a name and a number if others have that name."""
+        for known, other in self.signals.items():
+            if other == signal:
+                return known
+        if len(self.signals) == MOST_SIGNALS:
+            raise ValueError(f"a scene has at most {MOST_SIGNALS} signals")
+        own = f"{name}-{len(self.signals) + 1}" if name in self.signals else name
+        self.signals[own] = signal
+        return own
 
-def _entities(name: str) -> InputError:
-    return InputError(f"{name} declares entities, which OpenLatero's files have none of; remove it")
+    def truncated(self, rate: float, cycle: float = 1.0) -> float:
+        """Frequency, or speed of cycles of a length, that is shown for one that is written.
 
-
-def _say_faults(parser: Any, remarks: Remarks) -> None:
-    """Say where the XML is broken."""
-    faults: dict[int, str] = {}
-    for entry in parser.error_log:
-        faults.setdefault(entry.line, printable(str(entry.message)))
-    for line, message in sorted(faults.items())[:_MOST_FAULTS]:
-        remarks.add(line, "XML", f"it is broken here, and read as far as it can be: {message}")
-    if len(faults) > _MOST_FAULTS:
-        more = count(len(faults) - _MOST_FAULTS, "more line")
-        remarks.add(sorted(faults)[_MOST_FAULTS], "XML", f"it is broken here and in {more}")
+        Periods have whole microseconds in OpenLatero.
+        """
+        period_us = math.floor(1e6 * cycle / abs(rate)) if rate else 0
+        if not self.as_shown or period_us < 1:
+            return rate
+        return math.copysign(1e6 * cycle / period_us, rate)
 
 
-def _elements(root: Any, name: str, remarks: Remarks) -> GenElement:
-    """Elements for those of the library, without going through them by recursion."""
-    top = _element(root, None, remarks)
-    left: list[tuple[Any, GenElement, int]] = [(root, top, 1)]
-    while left:
-        xml, element, depth = left.pop()
-        for inner in xml:
-            if not isinstance(inner.tag, str):  # an entity that is declared nowhere
-                element.say(f"the entity {printable(inner.text or '')} is ignored")
+class Element:
+    """An element of a file, with the values that the table says it has, by their names in it.
+
+    Attributes
+    ----------
+    here : dict
+        Values that have a name in our scenes, by these.
+    given : set of str
+        Names of the elements in it.
+    there : bool
+        Whether it stands in the file.
+    line, text
+        Line at which it begins, from 1, and the text in it before its first element.
+    owner, path
+        What the pattern that it belongs to is, such as "Circle", and the names of the elements that
+        lead to it from that pattern.
+
+    Parameters
+    ----------
+    xml
+        The element of the library.
+    context
+        What is known about the file.
+    above
+        The element that it is in; None for the root.
+    tables
+        Names by which the table tells what is in it; none if its text is all that counts.
+    """
+
+    def __init__(
+        self, xml: Any, context: Context, above: Element | None = None, *tables: str
+    ) -> None:
+        self.xml, self.context = xml, context
+        self.tag = printable(xml.tag.rpartition("}")[2])
+        self.remarks = above.remarks if above else context.remarks
+        self.line: int = xml.sourceline or (above.line if above else 1)
+        self.text = (xml.text or "").strip().rstrip("\\").strip()  # which some files have astray
+        self.owner, self.path = self.tag, ""
+        if self.tag in ("Pattern", "Generator"):
+            self.owner = self.attribute("subtype") or self.attribute("type") or self.tag
+        elif above is not None:
+            self.owner, self.path = above.owner, f"{above.path} {self.tag}".strip()
+        self.there = xml.getparent() is not None
+        self.given: set[str] = set()
+        self.here: dict[str, Any] = {}
+        if tables:
+            self._fill({key: row for table in tables for key, row in rows_of(table).items()})
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    def attribute(self, name: str) -> str:
+        """Value of an attribute; empty if it is not there."""
+        return printable(self.xml.get(name, "")).strip()
+
+    def say(self, text: str) -> None:
+        """Say something about the pattern, at the line of this element."""
+        self.remarks.setdefault((self.owner, text), []).append(self.line)
+
+    def word(self, text: str, words: Iterable[str], usual: str) -> str:
+        """One of a few words for a text, or the usual one for others, which is said."""
+        for known in (text, text.lower()):
+            if known in words:
+                return known
+        near = nearest(text, words)
+        self.say(f'{self.path} "{_short(text)}" is not known, so "{usual}" is taken{near}')
+        return usual
+
+    def _fill(self, rows: dict[str, Row]) -> None:
+        """Read the elements in this one by their rows; parts that are not there are as usual."""
+        from lxml import etree
+
+        found: dict[str, list[Any]] = {}
+        for xml in self.xml.iterchildren("*"):
+            found.setdefault(etree.QName(xml).localname, []).append(xml)
+        self.given |= found.keys()
+        for name, row in rows.items():
+            written = found.pop(name, [])
+            if row.kind in _SEVERAL:
+                kind = _SEVERAL[row.kind]
+                setattr(self, name, [_value(self, xml, row._replace(kind=kind)) for xml in written])
                 continue
-            if depth >= DEEPEST:
-                raise InputError(f"{name} line {inner.sourceline}: its elements nest too deep")
-            child = _element(inner, element, remarks)
-            element.children.append(child)
-            left.append((inner, child, depth + 1))
-    return top
+            self._pass_over(written[1:], "another {} is ignored, since the first counts")
+            value = _value(self, written[0] if written else etree.Element(name), row)
+            setattr(self, name, value)
+            if row.here:
+                self.here[row.here] = value
+            if name == "enable" and not value:
+                self.remarks = Remarks()  # no more is said of what is off
+        for written in found.values():
+            self._pass_over(written, "{} is not known here, and ignored")
+
+    def _pass_over(self, written: list[Any], text: str) -> None:
+        for xml in written:
+            other = Element(xml, self.context, self)
+            other.say(text.format(other.path or f"{other.tag} {other.attribute('type')}".strip()))
 
 
-def _element(xml: Any, above: GenElement | None, remarks: Remarks) -> GenElement:
-    name = printable(xml.tag.rpartition("}")[2])
-    attributes = {key: printable(value) for key, value in xml.attrib.items()}
-    owner, path = (above.owner, f"{above.path} {name}".strip()) if above else (name, "")
-    if name in ("Pattern", "Generator"):
-        owner, path = attributes.get("subtype") or attributes.get("type") or name, ""
-    line = xml.sourceline or 1
-    return GenElement(name, line, attributes, xml.text or "", remarks, owner, path)
+# Kinds of elements of which there may be several, and what each of them is.
+_SEVERAL = {"patterns": "text", "places": "place", "sounds": "sound"}
+# Ranges of numbers, by their units.
+_LIMITS = {
+    "mm": (0.0, MOST_MM),
+    "°": (-1e6, 1e6),
+    "Hz": (LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ),
+    "mm/s": (-1000.0, 1000.0),
+    "ms": (0.0, 20_000.0),
+    "share": (0.0, 1.0),
+    "number": (0.0, MOST_MM),
+}
+# Units by which OpenLatero writes the same thing.
+_SAME = {"°": ("degree", "deg", "degrees"), "°/s": ("degree/s",), "share": ("%",)}
+
+
+def _value(above: Element, xml: Any, row: Row) -> Any:
+    """Value of an element by its row: what is usual, if it does not stand in the file."""
+    kind, (usual, *more) = row.kind, row.usual.split(" ")
+    leaf = Element(xml, above.context, above)
+    if kind in ("pattern", "text", "unused"):
+        return leaf
+    if not leaf.there:
+        leaf.text = usual
+    if kind == "yesno":
+        return _yes_no(leaf)
+    if kind == "words":
+        words = [word.strip() for word in row.usual.split("|")]
+        return leaf.word(leaf.text if leaf.there else words[0], words, words[0])
+    if kind == "place":
+        x, y = map(float, usual.split(","))
+        return place(leaf, (x, y))
+    if kind == "speed":
+        in_hertz = leaf.attribute("units") == "Hz"
+        return number(leaf, 0.0, "Hz" if in_hertz else more[-1], -1e6, 1e6), in_hertz
+    if kind in _LIMITS:
+        low, high = map(float, more[-1].split("..")) if more else _LIMITS[kind]
+        return number(leaf, float(usual), kind, low, high)
+    return Element(xml, above.context, above, kind)
 
 
 # Numbers as C reads them, which is independent of the locale here.
@@ -175,286 +252,191 @@ _DECIMAL_COMMA = re.compile(r"([+-]?\d+),(\d+)(?![\d,.])")
 _POINT = re.compile(rf"({_NUMBER})\s*,\s*({_NUMBER})")
 _COMMAS = re.compile(r"([+-]?\d+),(\d+),([+-]?\d+)(?:,(\d+))?")
 _LONGEST = 40  # characters of a quoted text
-_MEANT = {"degree": "°", "degree/s": "°/s"}  # units that the files name otherwise
-# Units that OpenLatero writes, and that are the same thing to it where it reads.
-_SAME = {"°": ("deg", "degrees", "°"), "share": ("%", "")}
 
 
-class GenElement:
-    """An element of a file, with what was asked of it.
-
-    Attributes
-    ----------
-    fields : mapping of str to Field
-        Table of the values that an element of its kind has in it.
+def number(
+    leaf: Element, usual: float, unit: str, low: float = 0.0, high: float = MOST_MM
+) -> float:
+    """Read a number; one that is out of range is put to its nearest end.
 
     Parameters
     ----------
-    name
-        Name of the element, without a namespace.
-    line
-        Line at which it begins, from 1.
-    attributes
-        Attributes of the element.
-    text
-        Text in it before its first element.
-    remarks
-        What is said about the file.
-    owner
-        What the pattern that it belongs to is, such as "Circle".
-    path
-        Names of the elements that lead to it from that pattern.
-    """
-
-    __slots__ = (
-        "_asked", "_attributes", "children", "fields", "line", "name", "owner", "path", "remarks",
-        "text",
-    )  # fmt: skip
-
-    def __init__(
-        self,
-        name: str,
-        line: int,
-        attributes: dict[str, str],
-        text: str,
-        remarks: Remarks,
-        owner: str = "",
-        path: str = "",
-    ) -> None:
-        self.name = name
-        self.line = line
-        self.text = text
-        self.owner = owner
-        self.path = path
-        self.remarks = remarks
-        self.children: list[GenElement] = []
-        self.fields: Mapping[str, Field] = {}
-        self._attributes = attributes
-        self._asked = False
-
-    def attribute(self, name: str) -> str:
-        """Value of an attribute; empty if it is not there."""
-        return self._attributes.get(name, "").strip()
-
-    def say(self, text: str) -> None:
-        """Say something about the pattern, at the line of this element."""
-        self.remarks.add(self.line, self.owner, text)
-
-    def one(self, name: str, fields: Mapping[str, Field] | None = None) -> GenElement | None:
-        """First element of a name in this one, with a table of its fields.
-
-        OpenLatero ignores others, so they are said.
-        """
-        found = self.every(name)
-        for other in found[1:]:
-            other.forget()
-            other.say(f"another {other.path} is ignored, since the first counts")
-        if not found:
-            return None
-        found[0].fields = fields or {}
-        return found[0]
-
-    def part(self, name: str, fields: Mapping[str, Field] | None = None) -> GenElement:
-        """First element of a name in this one, or one without anything in it."""
-        found = self.one(name, fields)
-        if found is None:
-            path = f"{self.path} {name}".strip()
-            found = GenElement(name, self.line, {}, "", self.remarks, self.owner, path)
-            found.fields = fields or {}
-        return found
-
-    def every(self, name: str) -> list[GenElement]:
-        """All elements of a name in this one."""
-        found = [child for child in self.children if child.name == name]
-        for child in found:
-            child._asked = True
-        return found
-
-    def skip(self, *names: str) -> None:
-        """Leave elements of some names out without a word, since nothing depends on them."""
-        for name in names:
-            for child in self.every(name):
-                child.forget()
-
-    def forget(self) -> None:
-        """Leave out all that is in this element."""
-        left: list[GenElement] = [self]
-        while left:
-            element = left.pop()
-            element._asked = True
-            left += element.children
-
-    def unasked(self) -> Iterator[GenElement]:
-        """Elements that no reader asked for, but not what is in them."""
-        left: list[GenElement] = [self]
-        while left:
-            for child in left.pop().children:
-                if child._asked:
-                    left.append(child)
-                else:
-                    yield child
-
-    def __getitem__(self, name: str) -> Any:
-        """Value of a field that this element has by the table of its kind."""
-        return self.read(name, self.fields[name])
-
-    def read(self, name: str, field: Field) -> Any:
-        """Value of a field; what OpenLatero takes if it is not there."""
-        element = self.one(name)
-        return field.default if element is None else field.read(element)
-
-    def chosen(self, text: str, words: Collection[str], default: str) -> str:
-        """One of a few words for a text, or what counts for others, which is said."""
-        word = cleaned(text)
-        for known in (word, word.lower()):
-            if known in words:
-                return known
-        self.say(
-            f'{self.path} "{_short(word)}" is not known, so "{default}" is taken'
-            f"{nearest(word, words)}"
-        )
-        return default
-
-    def units(self) -> str:
-        """Units that this element names, as they are said here."""
-        named = self.attribute("units")
-        return _MEANT.get(named, named)
-
-    def check_units(self, unit: str) -> None:
-        """Say so if the units that are named are not those that count."""
-        named = self.units()
-        if named and named not in (unit, *_SAME.get(unit, ())):
-            counts = "a share from 0 to 1" if unit == "share" else unit or "a plain number"
-            self.say(f"{self.path} is in {counts}, although its units say {_short(named)}")
-
-
-class NumberField(NamedTuple):
-    """A number.
-
-    Parameters
-    ----------
-    default
-        What OpenLatero takes if it is not there.
-    low, high
-        The range of it here; what is outside is put to its nearest end, and said.
+    leaf
+        The element.
+    usual
+        What counts if there is none.
     unit
         Unit that counts: "mm", "°", "Hz", "share" for a fraction of 1, or empty for none.
+    low, high
+        The range of it here.
     """
-
-    default: float
-    low: float = 0.0
-    high: float = MOST_MM
-    unit: str = "mm"
-
-    def read(self, element: GenElement) -> float:
-        """Number of an element, within the range."""
-        element.check_units(self.unit)
-        value = self._value(element)
-        if self.low <= value <= self.high:
-            return value
-        clamped = min(max(value, self.low), self.high)
-        share = self.unit == "share" and value > 1
-        element.say(
-            f"{element.path} is {value:g}, and {'shares are' if share else 'it must be'} "
-            f"{self.low:g} to {self.high:g}; {clamped:g} is taken"
-        )
-        return clamped
-
-    def _value(self, element: GenElement) -> float:
-        """Number that the text of an element begins with."""
-        text = cleaned(element.text)
-        comma = _DECIMAL_COMMA.match(text)
-        found = comma or _LEADING.match(text)
-        if found is None:
-            what = f'"{_short(text)}", which is no number' if text else "empty"
-            element.say(f"{element.path} is {what}; {self.default:g} is taken")
-            return self.default
-        value = float(found[0].replace(",", "."))
-        if not math.isfinite(value):
-            element.say(f"{element.path} is too large a number; {self.default:g} is taken")
-            return self.default
-        if comma:
-            element.say(f'{element.path} "{_short(text)}" has a decimal comma; {value:g} is taken')
-        elif found[0] != text:
-            rest = text[found.end() :].strip()
-            element.say(f'{element.path} has "{_short(rest)}" after its number, which is ignored')
+    _check_units(leaf, unit)
+    value = _leading(leaf, usual)
+    if low <= value <= high:
         return value
+    clamped = min(max(value, low), high)
+    must = "shares are" if unit == "share" and value > 1 else "it must be"
+    leaf.say(f"{leaf.path} is {value:g}, and {must} {low:g} to {high:g}; {clamped:g} is taken")
+    return clamped
 
 
-SHARE = NumberField(1.0, 0.0, 1.0, "share")
-ANGLE = NumberField(0.0, -1e6, 1e6, "°")
+def _check_units(leaf: Element, unit: str) -> None:
+    """Say so if the units that are named are not those that count."""
+    named = leaf.attribute("units")
+    if named and named not in (unit, *_SAME.get(unit, ())):
+        counts = {"share": "a share from 0 to 1", "number": "a plain number"}.get(unit, unit)
+        leaf.say(f"{leaf.path} is in {counts}, although its units say {_short(named)}")
 
 
-class YesNoField(NamedTuple):
-    """A yes or no."""
-
-    default: bool
-
-    def read(self, element: GenElement) -> bool:
-        """Tell whether an element says yes."""
-        word = cleaned(element.text).lower()
-        if word not in ("yes", "true", "no", "false"):
-            said = _short(element.text)
-            element.say(f'{element.path} is "{said}", neither yes nor no; no is taken')
-        return word in ("yes", "true")
-
-
-OFF, ON = YesNoField(False), YesNoField(True)
-
-
-class WordField(NamedTuple):
-    """One of a few words, and what counts for all others."""
-
-    default: str
-    words: Collection[str]
-
-    def read(self, element: GenElement) -> str:
-        """Word of an element."""
-        return element.chosen(element.text, self.words, self.default)
+def _leading(leaf: Element, usual: float) -> float:
+    """Number that the text of an element begins with."""
+    comma = _DECIMAL_COMMA.match(leaf.text)
+    found = comma or _LEADING.match(leaf.text)
+    if found is None:
+        what = f'"{_short(leaf.text)}", which is no number' if leaf.text else "empty"
+        leaf.say(f"{leaf.path} is {what}; {usual:g} is taken")
+        return usual
+    value = float(found[0].replace(",", "."))
+    if not math.isfinite(value):
+        leaf.say(f"{leaf.path} is too large a number; {usual:g} is taken")
+        return usual
+    if comma:
+        leaf.say(f'{leaf.path} "{_short(leaf.text)}" has a decimal comma; {value:g} is taken')
+    else:
+        _say_rest(leaf, found[0])
+    return value
 
 
-class PlaceField(NamedTuple):
-    """A place, x and y in mm."""
-
-    default: Point = (0.0, 0.0)
-
-    def read(self, element: GenElement) -> Point:
-        """Place that an element gives.
-
-        The comma is between x and y. Programs whose language has decimal commas wrote some files
-        so, too: four numbers are two with decimals, and three are taken as that program would read
-        them.
-        """
-        element.check_units("mm")
-        text = cleaned(element.text)
-        said = f'{element.path} "{_short(text)}"'
-        commas = _COMMAS.fullmatch(text)
-        if commas:
-            x = float(f"{commas[1]}.{commas[2]}")
-            y = float(f"{commas[3]}.{commas[4] or 0}")
-            element.say(f"{said} has decimal commas; {x:g}, {y:g} is taken")
-            return (x, y)
-        found = _POINT.match(text)
-        point = (float(found[1]), float(found[2])) if found else self.default
-        if not found or not all(map(math.isfinite, point)):
-            x, y = self.default
-            element.say(f'{said} is no place "x,y"; {x:g},{y:g} is taken')
-            return self.default
-        if found[0] != text:
-            rest = text[found.end() :]
-            element.say(f'{element.path} has "{_short(rest)}" after its numbers, which is ignored')
-        return point
+def _say_rest(leaf: Element, read: str) -> None:
+    """Say so if there is more in an element than what was read."""
+    rest = leaf.text.removeprefix(read).strip()
+    if rest:
+        leaf.say(f'{leaf.path} has "{_short(rest)}" after its number, which is ignored')
 
 
-ORIGIN = PlaceField()
-Field = NumberField | YesNoField | WordField | PlaceField
+def _yes_no(leaf: Element) -> bool:
+    """Read a yes or no; what is neither is a no."""
+    word = leaf.text.lower()
+    if word not in ("yes", "true", "no", "false"):
+        leaf.say(f'{leaf.path} is "{_short(leaf.text)}", neither yes nor no; no is taken')
+    return word in ("yes", "true")
 
 
-def cleaned(text: str) -> str:
-    r"""Text without blanks around it, and without the stray ``\`` that some files have."""
-    return text.strip().rstrip("\\").strip()
+def place(leaf: Element, usual: Point) -> Point:
+    """Read a place.
+
+    The comma is between x and y. Programs whose language has decimal commas wrote some files so,
+    too: four numbers are two with decimals, and three are taken as that program would read them.
+    """
+    _check_units(leaf, "mm")
+    said = f'{leaf.path} "{_short(leaf.text)}"'
+    commas = _COMMAS.fullmatch(leaf.text)
+    if commas:
+        x, y = float(f"{commas[1]}.{commas[2]}"), float(f"{commas[3]}.{commas[4] or 0}")
+        leaf.say(f"{said} has decimal commas; {x:g}, {y:g} is taken")
+        return (x, y)
+    found = _POINT.match(leaf.text)
+    if found is None or not math.isfinite(float(found[1]) + float(found[2])):
+        leaf.say(f'{said} is no place "x,y"; {usual[0]:g},{usual[1]:g} is taken')
+        return usual
+    _say_rest(leaf, found[0])
+    return float(found[1]), float(found[2])
 
 
 def _short(text: str) -> str:
     said = printable(" ".join(text.split()))
     return said if len(said) <= _LONGEST else f"{said[:_LONGEST]}…"
+
+
+Maker = Callable[[Element], "AnyPattern | None"]
+# What makes patterns of elements by their types, and textures, which are all over the surface. It
+# makes None, and says so, where there is nothing to show, and raises ValueError where there can be
+# no such pattern.
+PATTERNS: dict[str, Maker] = {}
+TEXTURES: dict[str, Maker] = {}
+_DEEPEST = 32  # patterns within one another
+
+
+def makes(kinds: dict[str, Maker], *names: str) -> Callable[[Maker], Maker]:
+    """Put a function among those that make patterns."""
+
+    def keep(make: Maker) -> Maker:
+        kinds.update(dict.fromkeys(names, make))
+        return make
+
+    return keep
+
+
+def pattern_of(leaf: Element) -> AnyPattern | None:
+    """Pattern that an element tells of; None if there is nothing to show, which is said.
+
+    Whatever a pattern refuses is said and left out, so that one mistake costs one pattern.
+    """
+    of, kinds, name = "type of this pattern", PATTERNS, leaf.attribute("type")
+    if name == "Texture":
+        of, kinds, name = "subtype of this texture", TEXTURES, leaf.attribute("subtype")
+    if name not in kinds:
+        what = f'"{name}"' if name else "missing"
+        leaf.say(f"the {of} is {what}, which is not known{nearest(name, kinds)}; left out")
+        return None
+    if len(list(leaf.xml.iterancestors("{*}Pattern"))) >= _DEEPEST:
+        leaf.say(f"this is in {_DEEPEST} other patterns; left out")
+        return None
+    try:
+        tables = ("texture", name) if kinds is TEXTURES else (name,)
+        pattern = kinds[name](Element(leaf.xml, leaf.context, leaf, *tables))
+    except ValueError as error:
+        leaf.say(f"{error}; left out")
+        return None
+    if pattern is not None:
+        leaf.context.made[id(pattern)] = (pattern, leaf.line)
+    return pattern
+
+
+def read_root(content: bytes, name: str, context: Context) -> Element:
+    """Read a text of XML as an element.
+
+    Nothing is looked up elsewhere, and no entity is expanded.
+
+    Parameters
+    ----------
+    content
+        The text.
+    name
+        Name of its file, for messages.
+    context
+        Where it is said what was broken.
+
+    Raises
+    ------
+    InputError
+        If it is no XML, declares entities, or is far too large.
+    """
+    from lxml import etree
+
+    # Broken files are read as far as they can be; what was broken is said.
+    parser = etree.XMLParser(
+        recover=True, resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False,
+        remove_comments=True, remove_pis=True,
+    )  # fmt: skip
+    root: Any = None
+    has_entities = b"<!ENTITY" in content
+    if not has_entities:
+        with suppress(etree.XMLSyntaxError, ValueError):
+            root = etree.fromstring(content, parser)
+    if root is not None:
+        declared: Any = root.getroottree().docinfo.internalDTD
+        has_entities = declared is not None and any(True for _ in declared.iterentities())
+    if has_entities:
+        raise InputError(
+            f"{name} declares entities, which OpenLatero's files have none of; remove it"
+        )
+    if root is None:
+        raise InputError(f"{name} is no XML; give a file that OpenLatero wrote")
+    if root.xpath("count(//*)") > MOST_ELEMENTS:
+        raise InputError(f"{name} has more than {MOST_ELEMENTS} elements; split the picture in two")
+    made = Element(root, context, None, "file")
+    for fault in parser.error_log[:_MOST_FAULTS]:
+        said = f"it is broken here, and read as far as it can be: {printable(fault.message)}"
+        context.remarks.setdefault(("XML", said), []).append(fault.line)
+    return made

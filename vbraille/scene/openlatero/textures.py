@@ -1,26 +1,18 @@
-"""Textures of OpenLatero's files, which cover the whole surface: gratings and all others."""
+"""Textures of OpenLatero's files, which cover the whole surface, and patterns put together."""
 
 from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from msgspec.structs import replace
 
 from vbraille.scene.measures import LEAST_MM, MOST_MM
-from vbraille.scene.openlatero.context import (
-    FREQUENCY,
-    Kinds,
-    changed,
-    timed,
-    travelled,
-    vibration,
-)
-from vbraille.scene.openlatero.elements import ANGLE, OFF, ON, ORIGIN, SHARE, NumberField, WordField
-from vbraille.scene.openlatero.groups import joined, reacting, read_group
-from vbraille.scene.openlatero.shapes import speed_of
-from vbraille.scene.patterns import Circle, Group, Moving, Tile
+from vbraille.scene.openlatero.elements import TEXTURES, Element, makes, pattern_of, place
+from vbraille.scene.openlatero.shapes import operation_of, speed_of, vibration_of
+from vbraille.scene.patterns import Circle, Dots, Group, Image, Moving, Shape, Tile
+from vbraille.scene.signals import Direction, Speed
 from vbraille.scene.strokes import Stroke, Vibration
 from vbraille.scene.textures import (
     AxialGrating,
@@ -28,6 +20,7 @@ from vbraille.scene.textures import (
     LinearGrating,
     Peak,
     RadialGrating,
+    SignalLevel,
     TurnPeak,
     Uniform,
     UniformVibration,
@@ -36,351 +29,352 @@ from vbraille.scene.textures import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.scene.openlatero.context import GenContext
-    from vbraille.scene.openlatero.elements import GenElement
-    from vbraille.scene.patterns import AnyPattern
+    from vbraille.scene.measures import Point
+    from vbraille.scene.patterns import AnyPattern, Operation
 
-ROWS = Kinds()
-_LEAST_DEG = 0.5
-_MOST_DEG_S = 3600.0
-_MOST_MM_S = 1000.0
-_STILL = 1e-3  # mm/s, below which OpenLatero takes a projected speed as none
-
-
-# Bands of a cue, which OpenLatero weakens where they are added.
-_BAND_MM, _WIDE_BAND_MM, _BAND_GAP_MM, _BAND_AMPLITUDE = 2.0, 5.0, 30.0, 0.2
-_WIDE = ("vibration bands", "superposed vibration bands")
-_CUES = (
-    "none",
-    "vibration bands",
-    "superposed bands",
-    "superposed vibration bands",
-    "disabling bands",
-    "blending bands",
-)
-
-
-MOTION = {
-    "enable": OFF,
-    "velocity": NumberField(50.0, -_MOST_MM_S, _MOST_MM_S, "mm/s"),
-    "direction": ANGLE,
+_STILL_MM_S = 1e-3  # below which OpenLatero takes a projected speed as none
+_NOTHING = Uniform(level=0.0)
+_USUAL = LinearGrating(ridge_mm=8.0)  # the texture where none is given
+_AT_REST: Final[dict[str, Literal["high", "low", "keep"]]] = {
+    "high": "high",
+    "low": "low",
+    "toggle": "keep",
 }
-_FACTOR = NumberField(5.0, 0.05, 20.0, "")
-PITCH = {
-    "enable": OFF,
-    "factor": _FACTOR,
-    "length": NumberField(113.0, LEAST_MM),
-    "position": NumberField(0.0, -MOST_MM),
-}
-# That of an axial grating is in degrees.
-PITCH_DEG = {
-    "enable": OFF,
-    "factor": _FACTOR,
-    "length": NumberField(113.0, _LEAST_DEG, 360.0, "°"),
-    "position": NumberField(0.0, 0.0, 360.0, "°"),
-}
-WAVE = {"enable": ON, "invert": OFF, "ridge_size": NumberField(8.0), "gap_size": NumberField(0.0)}
-WAVE_DEG = {
-    "enable": ON,
-    "invert": OFF,
-    "ridge_size": NumberField(36.0, 0.0, 360.0, "°"),
-    "gap_size": NumberField(0.0, 0.0, 360.0, "°"),
+OPERATIONS: dict[str, Operation] = {
+    "multiply": "multiply",
+    "add": "add",
+    "max": "maximum",
+    "blend": "blend",
+    "overwrite": "overwrite",
 }
 
 
-@ROWS.row("Null")
-def _null(element: GenElement, context: GenContext) -> AnyPattern:
-    """Nothing, which has no changes either."""
-    del context
-    element.forget()
-    return Uniform(level=0.0)
+def joined(operation: Element, parts: list[AnyPattern | None]) -> AnyPattern | None:
+    """Parts put together as an element says, of which None are left out; None for nothing."""
+    felt = _joined(operation, [part for part in parts if not _sounds(part)])
+    sounds = tuple(sound for part in parts for sound in _sounds(part))
+    if not sounds:
+        return felt
+    if isinstance(felt, Group) and felt.operation in ("maximum", "add"):
+        return replace(felt, parts=felt.parts + sounds)
+    shown = () if felt is None else (felt,)
+    return Group(operation="maximum", parts=shown + sounds)
 
 
-@ROWS.row("Plain")
-def _plain(element: GenElement, context: GenContext) -> AnyPattern:
-    return _even(Uniform(), element, context)
+def _sounds(part: AnyPattern | None) -> tuple[AnyPattern, ...]:
+    """Masks of sounds, which change nothing of what is felt, if a part is of these alone."""
+    found = part.parts if isinstance(part, Group) else () if part is None else (part,)
+    return found if all(one.sound for one in found) else ()
 
 
-@ROWS.row("Vibration", freq=FREQUENCY)
-def _vibration(element: GenElement, context: GenContext) -> AnyPattern:
-    hertz = timed(element["freq"], context)
-    return _even(UniformVibration(frequency_hz=hertz), element, context)
-
-
-@ROWS.row("LinearGrating", angle=ANGLE, seed=ORIGIN)
-def _linear(element: GenElement, context: GenContext) -> AnyPattern | None:
-    angle = turned(element["angle"])
-    make = partial(LinearGrating, wave_angle_deg=angle or None, start_mm=element["seed"])
-    return _graded(make, _wave(element, "mm", context), element, context)
-
-
-@ROWS.row("RadialGrating", seed=ORIGIN)
-def _radial(element: GenElement, context: GenContext) -> AnyPattern | None:
-    make = partial(RadialGrating, center_mm=element["seed"])
-    return _graded(make, _wave(element, "mm", context), element, context)
-
-
-@ROWS.row("AxialGrating", seed=ORIGIN, seed_angle=ANGLE)
-def _axial(element: GenElement, context: GenContext) -> AnyPattern | None:
-    start = turned(element["seed_angle"])
-    make = partial(AxialGrating, center_mm=element["seed"], start_deg=start, whole_cycles=False)
-    wave = _wave(element, "°", context)
-    if isinstance(wave, dict):
-        if wave["ridge_deg"] + wave["gap_deg"] > 360.0:
-            wave["gap_deg"] = 360.0 - wave["ridge_deg"]
-            gap = f"{wave['gap_deg']:g}°"
-            element.say(f"its ridge and gap are more than a turn; a gap of {gap} is taken")
-        if wave["inverted"]:
-            element.say("its middle is down here, where the grating is inverted, and up there")
-    return _graded(make, wave, element, context)
-
-
-def _graded(
-    make: Callable[..., AnyPattern],
-    wave: dict[str, Any] | Uniform | None,
-    element: GenElement,
-    context: GenContext,
-) -> AnyPattern | None:
-    """Grating of a waveform, with its motion and its changes."""
-    if wave is None:
+def _joined(operation: Element, parts: list[AnyPattern | None]) -> AnyPattern | None:
+    """Parts that are felt, put together."""
+    name = operation_of(operation, "max")
+    if name == "reactive":
+        if len(parts) != 2:
+            operation.say(f"a reactive group is of 2 patterns, and this has {len(parts)}")
+        first, second = (*parts, None, None)[:2]
+        return _reacting(operation.Modulator, first, second)
+    if name == "blend":
+        if len(parts) != 3:
+            lost = "; left out" if len(parts) < 3 else ""
+            operation.say(f"a blend is of 3 patterns, and this has {len(parts)}{lost}")
+        if len(parts) < 3:
+            return None
+        # Theirs weighs the first, and ours the second.
+        first, second, by = (part or _NOTHING for part in parts[:3])
+        return Group(operation="blend", parts=(second, first), by=by)
+    if name == "multiply" and None in parts:
+        operation.say("a part of a product is left out, and so is all of it")
         return None
-    if isinstance(wave, Uniform):
-        return _even(wave, element, context)
-    pattern = make(**wave)
-    moved = travelling(pattern, element) if isinstance(pattern, LinearGrating) else None
-    return _changed(_carried(moved or pattern, element, moves=moved is None), element, context)
+    found = [part for part in parts if part is not None]
+    if name == "overwrite" and any(map(_hides_otherwise, found[1:])):
+        operation.say("its layers hide a little more or less of what is below them here than there")
+    if len(found) < 2:
+        return found[0] if found else None
+    return Group(operation=OPERATIONS[name], parts=tuple(found))
 
 
-def _wave(element: GenElement, unit: str, context: GenContext) -> dict[str, Any] | Uniform | None:
-    """Waveform of a grating, by the names of its fields here.
-
-    It is what is the same everywhere if it is off, and None if it has no ridges.
-    """
-    turning = unit == "°"
-    grating = element.part("Grating", WAVE_DEG if turning else WAVE)
-    inverted = grating["invert"]
-    if not grating["enable"]:
-        grating.forget()
-        return Uniform(level=float(inverted))
-    least = _LEAST_DEG if turning else LEAST_MM
-    ridge, gap = grating["ridge_size"], grating["gap_size"]
-    if ridge < least:
-        grating.say(f"its ridges are {ridge:g} {unit}, and must be {least:g} or more; left out")
-        return None
-    distortion = _distortion(grating, unit)
-    speed = speed_of(grating, unit, ridge + gap, _MOST_DEG_S if turning else _MOST_MM_S)
-    name = "deg" if turning else "mm"
-    return {
-        f"ridge_{name}": ridge,
-        f"gap_{name}": gap,
-        # OpenLatero ignores it where the frequency changes, too.
-        f"velocity_{name}_s": (
-            travelled(speed, ridge + gap, context) if distortion is None else 0.0
-        ),
-        "distortion": distortion,
-        "inverted": inverted,
-    }
+def _hides_otherwise(part: AnyPattern) -> bool:
+    """Tell whether a part hides something else of what is below it than it does there."""
+    if isinstance(part, Group) and part.by is None:
+        return part.operation == "overwrite" or any(map(_hides_otherwise, part.parts))
+    if isinstance(part, Image):
+        return not part.nearest
+    if isinstance(part, Dots):
+        return part.dot.across is not None
+    if isinstance(part, Shape):
+        stroke = part.stroke
+        return stroke is None or stroke.across is not None or part.is_cued_over
+    return True  # a texture, which hides all here, and there as far as it is up
 
 
-def _distortion(grating: GenElement, unit: str) -> Gradual | Peak | TurnPeak | None:
-    """Change of the frequency along a grating; None for none."""
-    element = grating.one("PitchModulator", PITCH if unit == "mm" else PITCH_DEG)
-    if element is None:
-        return None
-    if not element["enable"]:
-        element.forget()
-        return None
-    kind = element.chosen(element.attribute("type"), ("slope", "peak"), "slope")
-    factor, length, place = element["factor"], element["length"], element["position"]
-    if unit == "mm":
-        if kind == "peak":
-            return Peak(factor=factor, center_mm=place, length_mm=length)
-        return Gradual(factor=factor, start_mm=place, length_mm=length)
-    if kind == "peak":
-        return TurnPeak(factor=factor, center_deg=place, length_deg=length)
-    element.say("the frequency of an axial grating has no slope here; it is the same all round")
-    return None
+def _reacting(
+    modulator: Element, first: AnyPattern | None, second: AnyPattern | None
+) -> AnyPattern:
+    """Blend of two patterns by the hand's movement; it is the first where the modulator is 1."""
+    kind = modulator.word(modulator.attribute("type"), ("Directional", "Velocity"), "Directional")
+    if kind == "Velocity":
+        name, signal = "slow", Speed(
+            below_mm_s=modulator.limit,
+            transition_mm_s=modulator.transition,
+            # Theirs is the time until it has risen: half of it waits.
+            delay_s=modulator.delay / 2000.0,
+        )  # fmt: skip
+    else:
+        name, signal = "way", Direction(
+            **modulator.here,
+            angle_deg=_turned(modulator.direction),
+            at_rest=_AT_REST[modulator.low_velocity_mode],
+        )  # fmt: skip
+    by = SignalLevel(name=modulator.context.signal(name, signal))
+    return Group(operation="blend", parts=(second or _NOTHING, first or _NOTHING), by=by)
 
 
-def travelling(grating: LinearGrating, element: GenElement) -> LinearGrating | None:
-    """Linear grating with a texture's motion; None if that cannot be shown.
-
-    A grating that is carried along is the same as one whose ridges move by the part of the motion
-    that goes across them.
-    """
-    motion = element.one("motion", MOTION)
-    if motion is None:
-        return grating
-    if not motion["enable"]:
-        motion.forget()
-        return grating
-    if grating.distortion is not None:
-        return None
-    turn = math.radians(motion["direction"] - (grating.wave_angle_deg or 0.0))
-    across = motion["velocity"] * math.cos(turn)
-    total = grating.velocity_mm_s + (across if abs(across) >= _STILL else 0.0)
-    return replace(grating, velocity_mm_s=max(-_MOST_MM_S, min(_MOST_MM_S, total)))
-
-
-def turned(angle_deg: float) -> float:
+def _turned(angle_deg: float) -> float:
     """Angle within a turn."""
     return math.fmod(angle_deg, 360.0)
 
 
-@ROWS.row(
-    "DoubleLinearGrating",
-    seed=ORIGIN,
-    angle=ANGLE,
-    primary_ridge_size=NumberField(8.0),
-    primary_gap_size=NumberField(0.0),
-    secondary_scale=NumberField(1.0, unit=""),
-    # OpenLatero takes whatever it does not know as parallel.
-    constraint=WordField("parallel", ("orthogonal", "parallel")),
-    primary_amplitude=SHARE,
-    secondary_amplitude=SHARE,
-)
-def _double(element: GenElement, context: GenContext) -> AnyPattern | None:
-    seed, angle = element["seed"], element["angle"]
-    ridge, gap = element["primary_ridge_size"], element["primary_gap_size"]
-    scale = element["secondary_scale"]
-    orthogonal = element["constraint"] == "orthogonal" or element.one("constraint") is None
-    amplitudes = element["primary_amplitude"], element["secondary_amplitude"]
-    if min(ridge, ridge * scale) < LEAST_MM:
+def _changed(
+    part: AnyPattern, amplitude: float, inverted: bool = False, vibration: Vibration | None = None
+) -> AnyPattern:
+    """Pattern whose deflections are changed, by itself or by a group around it."""
+    if amplitude == 1.0 and not inverted and vibration is None:
+        return part
+    if part.amplitude != 1.0 or part.inverted or part.vibration is not None:
+        part = Group(operation="maximum", parts=(part,))
+    return replace(part, amplitude=amplitude, inverted=inverted, vibration=vibration)
+
+
+def _across(motion: Element, grating: LinearGrating) -> LinearGrating:
+    """Grating whose ridges move by the part of a motion that goes across them."""
+    if not motion.enable:
+        return grating
+    turn = math.radians(motion.direction - (grating.wave_angle_deg or 0.0))
+    across = motion.velocity * math.cos(turn)
+    total = grating.velocity_mm_s + (across if abs(across) >= _STILL_MM_S else 0.0)
+    return replace(grating, velocity_mm_s=max(-1000.0, min(1000.0, total)))
+
+
+def _texture(*names: str, unread: bool = False) -> Callable[[Any], Any]:
+    """Put a function among those that make textures, which are then placed and changed.
+
+    Parameters
+    ----------
+    names
+        Their types.
+    unread
+        Whether OpenLatero does not read the amplitude, inversion and vibration of these.
+    """
+
+    def keep(alone: Callable[[Element], AnyPattern | None]) -> Callable[..., Any]:
+        def make(element: Element) -> AnyPattern | None:
+            pattern = alone(element)
+            if pattern is None:
+                return None
+            carried = _carried(pattern, element)
+            vibration = vibration_of(element.vibration)
+            made = _changed(carried, element.amplitude, element.invert, vibration)
+            if made is carried or not unread:
+                return made
+            changes = "its amplitude, invert and vibration are"
+            if element.context.as_shown:
+                element.say(f"{changes} ignored, as OpenLatero does")
+                return carried
+            element.say(f"{changes} as the file says; OpenLatero does not read them here")
+            return made
+
+        return makes(TEXTURES, *names)(make)
+
+    return keep
+
+
+def _carried(part: AnyPattern, element: Element) -> AnyPattern:
+    """Texture that moves as a whole (eq. 9.1), or stands where the array is."""
+    if isinstance(part, Uniform | UniformVibration):
+        return part
+    motion, velocity = element.motion, (0.0, 0.0)
+    if isinstance(part, LinearGrating) and part.distortion is None:
+        part = _across(motion, part)
+    elif motion.enable:
+        way = math.radians(motion.direction)
+        velocity = motion.velocity * math.cos(way), motion.velocity * math.sin(way)
+    center: Point | None = None
+    if element.td_centric.there:
+        center = place(element.td_centric, (0.0, 0.0))
+    if center is None and velocity == (0.0, 0.0):
+        return part
+    return Moving(part=part, velocity_mm_s=velocity, array_at_mm=center)
+
+
+@makes(TEXTURES, "Null")
+def _null(element: Element) -> AnyPattern:
+    """Nothing, which has no changes either."""
+    del element
+    return Uniform(level=0.0)
+
+
+@_texture("Plain")
+def _plain(element: Element) -> AnyPattern:
+    del element
+    return Uniform()
+
+
+@_texture("Vibration")
+def _vibration(element: Element) -> AnyPattern:
+    return UniformVibration(frequency_hz=element.context.truncated(element.freq))
+
+
+@_texture("LinearGrating")
+def _linear(element: Element) -> AnyPattern | None:
+    angle = _turned(element.angle) or None
+    make = partial(LinearGrating, **element.here, wave_angle_deg=angle)
+    return _grating(element.Grating, make)
+
+
+@_texture("RadialGrating")
+def _radial(element: Element) -> AnyPattern | None:
+    return _grating(element.Grating, partial(RadialGrating, **element.here))
+
+
+@_texture("AxialGrating")
+def _axial(element: Element) -> AnyPattern | None:
+    wave = element.Grating
+    if wave.ridge_size + wave.gap_size > 360.0:
+        wave.gap_size = wave.here["gap_deg"] = 360.0 - wave.ridge_size
+        wave.say(f"its ridge and gap are more than a turn; a gap of {wave.gap_size:g}° is taken")
+    make = partial(
+        AxialGrating,
+        **element.here,
+        start_deg=_turned(element.seed_angle),
+        whole_cycles=False,
+        middle=float(not wave.invert),  # it is inverted with the grating
+    )
+    return _grating(wave, make, "°", "deg", 0.5, 3600.0)
+
+
+def _grating(
+    wave: Element,
+    make: Callable[..., AnyPattern],
+    unit: str = "mm",
+    ours: str = "mm",
+    least: float = LEAST_MM,
+    most: float = 1000.0,
+) -> AnyPattern | None:
+    """Grating; what is the same everywhere if it is off, and None if it has no ridges.
+
+    Parameters
+    ----------
+    wave
+        The element of its ridges.
+    make
+        What makes the grating with its ridges.
+    unit, ours
+        Unit of the lengths of its ridges, and how names in our scenes have it.
+    least, most
+        Shortest ridges, and largest speed.
+    """
+    if not wave.enable:
+        return Uniform(level=float(wave.invert))
+    ridge = wave.ridge_size
+    if ridge < least:
+        wave.say(f"its ridges are {ridge:g} {unit}, and must be {least:g} or more; left out")
+        return None
+    distortion = _distortion(wave.PitchModulator, unit) if wave.PitchModulator.enable else None
+    # Where the frequency changes, ridges do not move in OpenLatero either.
+    speed = wave.context.truncated(speed_of(wave, unit, most), ridge + wave.gap_size)
+    moving = {f"velocity_{ours}_s": 0.0 if distortion else speed}
+    return make(**wave.here, **moving, distortion=distortion)
+
+
+def _distortion(pitch: Element, unit: str) -> Gradual | Peak | TurnPeak | None:
+    """Change of the frequency along a grating."""
+    kind = pitch.word(pitch.attribute("type"), ("slope", "peak"), "slope")
+    if unit == "mm" and kind == "slope":
+        return Gradual(**pitch.here, start_mm=pitch.position)
+    if unit == "mm":
+        return Peak(**pitch.here, center_mm=pitch.position)
+    if kind == "peak":
+        return TurnPeak(**pitch.here, center_deg=pitch.position)
+    pitch.say("the frequency of an axial grating has no slope here; it is the same all round")
+    return None
+
+
+@_texture("DoubleLinearGrating", unread=True)
+def _double(element: Element) -> AnyPattern | None:
+    """Two gratings, each of which moves by itself."""
+    ridge, gap = element.primary_ridge_size, element.primary_gap_size
+    if min(ridge, ridge * element.secondary_scale) < LEAST_MM:
         element.say(f"its ridges are below {LEAST_MM} mm; left out")
         return None
-    made: list[AnyPattern | None] = []
-    for number, amplitude in enumerate(amplitudes):
-        times = scale if number else 1.0
-        direction = turned(angle + (90.0 if number and orthogonal else 0.0))
+    turn = 90.0 if element.constraint == "orthogonal" else 0.0
+    both: list[AnyPattern | None] = []
+    for scale, angle, amplitude in (
+        (1.0, element.angle, element.primary_amplitude),
+        (element.secondary_scale, element.angle + turn, element.secondary_amplitude),
+    ):
         grating = LinearGrating(
-            ridge_mm=ridge * times,
-            gap_mm=min(gap * times, MOST_MM),
-            wave_angle_deg=direction or None,
-            start_mm=seed,
+            ridge_mm=ridge * scale,
+            gap_mm=min(gap * scale, MOST_MM),
+            wave_angle_deg=_turned(angle) or None,
+            start_mm=element.seed,
         )
-        grating = travelling(grating, element) or grating
-        made.append(changed(grating, amplitude, False, None))
-    pattern = joined(element, made, context)
-    return None if pattern is None else _unread(pattern, element, context)
+        both.append(_changed(_across(element.motion, grating), amplitude))
+    element.motion.enable = False
+    return joined(element.operation, both)
 
 
-@ROWS.row("Combo")
-def _combo(element: GenElement, context: GenContext) -> AnyPattern | None:
-    pattern = read_group(element, context)
-    return None if pattern is None else _changed(_carried(pattern, element), element, context)
+@_texture("Combo")
+def _combo(element: Element) -> AnyPattern | None:
+    return joined(element.operation, [pattern_of(part) for part in element.Pattern])
 
 
-@ROWS.row("Blend")
-def _blend(element: GenElement, context: GenContext) -> AnyPattern | None:
-    """A texture by the hand's movement."""
-    parts = element.every("Pattern")
-    if len(parts) == 2:
-        first, second = map(context.pattern, parts)
-    else:
-        for part in parts:
-            part.forget()
-        element.say(f"it has {len(parts)} textures instead of 2; OpenLatero's own are taken")
-        first = LinearGrating(ridge_mm=8.0, wave_angle_deg=90.0)
-        second = LinearGrating(ridge_mm=8.0)
-    pattern = reacting(first, second, element.part("Modulator"), context)
-    return _changed(_carried(pattern, element), element, context)
+@_texture("Blend")
+def _blend(element: Element) -> AnyPattern | None:
+    """One of two textures by the movement of the hand."""
+    found = [pattern_of(part) for part in element.Pattern]
+    if len(found) != 2:
+        element.say(f"it has {len(found)} textures instead of 2; OpenLatero's own are taken")
+        found = [replace(_USUAL, wave_angle_deg=90.0), _USUAL]
+    return _reacting(element.Modulator, *found)
 
 
-@ROWS.row("Motion", cue_type=WordField("none", _CUES), direction=ANGLE, velocity=MOTION["velocity"])
-def _motion(element: GenElement, context: GenContext) -> AnyPattern | None:
-    cue, angle, speed = element["cue_type"], turned(element["direction"]), element["velocity"]
-    part = element.one("Pattern")
-    pattern = LinearGrating(ridge_mm=8.0) if part is None else context.pattern(part)
-    if pattern is None:
-        return None
-    if cue != "none":
-        if cue == "superposed vibration bands" and not context.as_shown:
-            element.say("its bands vibrate, as their name says; OpenLatero's do not")
-        pattern = _cued(pattern, cue, angle, speed, context)
-    return _unread(_carried(pattern, element), element, context)
-
-
-def _cued(
-    pattern: AnyPattern, cue: str, angle_deg: float, speed_mm_s: float, context: GenContext
-) -> Group:
-    """Texture over which bands move under the finger, whether the hand moves or not: 9.3."""
-    ridge = _WIDE_BAND_MM if cue in _WIDE else _BAND_MM
+@_texture("Motion", unread=True)
+def _motion(element: Element) -> AnyPattern | None:
+    """A texture over which bands move under the finger, whether the hand moves or not: 9.3."""
+    cue, context = element.cue_type, element.context
+    under = pattern_of(element.Pattern) if element.Pattern.there else _USUAL
+    if under is None or cue == "none":
+        return under
+    ridge, gap = 5.0 if "vibration" in cue else 2.0, 30.0
     wave = LinearGrating(
         ridge_mm=ridge,
-        gap_mm=_BAND_GAP_MM,
-        wave_angle_deg=angle_deg or None,
-        velocity_mm_s=travelled(speed_mm_s, ridge + _BAND_GAP_MM, context),
+        gap_mm=gap,
+        wave_angle_deg=_turned(element.direction) or None,
+        velocity_mm_s=context.truncated(element.velocity, ridge + gap),
     )
     bands = Moving(part=wave, array_at_mm=(0.0, 0.0))
-    if cue in ("vibration bands", "blending bands"):
-        to = UniformVibration() if cue == "vibration bands" else Uniform(level=0.5)
-        return Group(operation="blend", parts=(pattern, to), by=bands)
     if cue == "disabling bands":
-        return Group(operation="multiply", parts=(pattern, replace(bands, inverted=True)))
-    swings = cue == "superposed vibration bands" and not context.as_shown
-    swing = Vibration() if swings else None
-    weak = replace(bands, amplitude=_BAND_AMPLITUDE, vibration=swing)
-    return Group(operation="add", parts=(pattern, weak))
+        return Group(operation="multiply", parts=(under, replace(bands, inverted=True)))
+    if cue == "vibration bands":
+        return Group(operation="blend", parts=(under, UniformVibration()), by=bands)
+    if cue == "blending bands":
+        return Group(operation="blend", parts=(under, Uniform(level=0.5)), by=bands)
+    vibration = None
+    if cue == "superposed vibration bands" and not context.as_shown:
+        element.say("its bands vibrate, as their name says; OpenLatero's do not")
+        vibration = Vibration()
+    # OpenLatero weakens bands that are added.
+    return Group(operation="add", parts=(under, _changed(bands, 0.2, vibration=vibration)))
 
 
-@ROWS.row("Pattern", grid_width=NumberField(20.0, 0.1), grid_height=NumberField(20.0, 0.1))
-def _tile(element: GenElement, context: GenContext) -> AnyPattern | None:
-    width, height = element["grid_width"], element["grid_height"]
-    found = element.one("Pattern")
-    part: AnyPattern | None
-    if found is None:
-        part = Circle(center_mm=(10.0, 10.0), radius_mm=5.0, stroke=Stroke(width_mm=1.0))
-    else:
-        part = context.pattern(found)
+@_texture("Pattern", unread=True)
+def _tile(element: Element) -> AnyPattern | None:
+    ring = Circle(center_mm=(10.0, 10.0), radius_mm=5.0, stroke=Stroke(width_mm=1.0))
+    part = pattern_of(element.Pattern) if element.Pattern.there else ring
     if part is None:
         return None
-    tile = Tile(width_mm=width, height_mm=height, part=part)
-    if context.as_shown and found is not None:
-        # It reads the changes of its pattern as its own.
-        tile = _changed(tile, found, context)
-    if context.as_shown:
-        element.skip("motion")
-        return _unread(tile, element, context)
-    return _unread(_carried(tile, element), element, context)
-
-
-def _changed(pattern: AnyPattern, element: GenElement, context: GenContext) -> AnyPattern:
-    """Pattern with the changes that an element names, and not a word of the picture of it."""
-    element.skip("icon")
-    amplitude, inverted = element.read("amplitude", SHARE), element.read("invert", OFF)
-    return changed(pattern, amplitude, inverted, vibration(element, context))
-
-
-def _even(pattern: AnyPattern, element: GenElement, context: GenContext) -> AnyPattern:
-    """Pattern that is the same everywhere, so that it shows no motion."""
-    element.skip("motion", "td_centric")
-    return _changed(pattern, element, context)
-
-
-def _unread(pattern: AnyPattern, element: GenElement, context: GenContext) -> AnyPattern:
-    """Pattern with changes that an element names, although OpenLatero does not read them there."""
-    made = _changed(pattern, element, context)
-    if made is not pattern:
-        names = "its amplitude, invert and vibration"
-        if context.as_shown:
-            element.say(f"{names} are ignored, as OpenLatero does")
-            made = pattern
-        else:
-            element.say(f"{names} are as the file says; OpenLatero does not read them here")
-    return made
-
-
-def _carried(pattern: AnyPattern, element: GenElement, *, moves: bool = True) -> AnyPattern:
-    """Texture that moves as a whole (eq. 9.1), or stands where the array is, as an element says."""
-    velocity = (0.0, 0.0)
-    motion = element.one("motion", MOTION) if moves else None
-    if motion is not None and motion["enable"]:
-        speed, direction = motion["velocity"], math.radians(motion["direction"])
-        velocity = speed * math.cos(direction), speed * math.sin(direction)
-    elif motion is not None:
-        motion.forget()
-    center = element.one("td_centric")
-    if center is None and velocity == (0.0, 0.0):
-        return pattern
-    place = None if center is None else ORIGIN.read(center)
-    return Moving(part=pattern, velocity_mm_s=velocity, array_at_mm=place)
+    if element.context.as_shown:  # which does not read it
+        element.motion.enable = False
+    return Tile(**element.here, part=part)

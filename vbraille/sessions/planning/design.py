@@ -7,11 +7,11 @@ are compared.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from random import Random
 from typing import Annotated, Literal, NamedTuple
 
-from msgspec import Meta
+from msgspec import Meta, structs
 
 from vbraille.braille.cells import UNICODE_BLANK
 from vbraille.braille.spelling import spell, spell_string, to_braille
@@ -86,10 +86,6 @@ class Repeated(Table, frozen=True, kw_only=True, tag_field="kind"):
     passage = False
     parameter = form = ""
 
-    def spellings(self) -> dict[str, tuple[str, ...]]:
-        """Return the spellings of cells in the table, by the path of their key."""
-        raise NotImplementedError
-
     def items(self, keys: dict[str, int] | None) -> list[str]:
         """Return the items, each once."""
         raise NotImplementedError
@@ -99,26 +95,29 @@ class Repeated(Table, frozen=True, kw_only=True, tag_field="kind"):
         raise NotImplementedError
 
 
-class StringList(Repeated, frozen=True, kw_only=True, tag="list"):
-    """The strings of a list, which are cells, texts or names of pictures.
+class ItemList(Repeated, frozen=True, kw_only=True, tag="items"):
+    """The strings of the table [items], which are cells, texts or names of pictures.
 
     Parameters
     ----------
-    strings
-        The strings.
     reorder
         Whether the cells of a string are shuffled in each trial.
     passage
         Whether each string is a text that is broken into lines, which are read one after the other.
     """
 
-    strings: Annotated[tuple[str, ...], Meta(min_length=1)]
     reorder: bool = False
     passage: bool = False
 
-    def spellings(self) -> dict[str, tuple[str, ...]]:
-        """Return the strings."""
-        return {"design.strings": self.strings}
+    def listed(self, strings: Iterable[str]) -> StringList:
+        """Return the design that shows some strings."""
+        return StringList(strings=tuple(strings), **structs.asdict(self))
+
+
+class StringList(ItemList, frozen=True, kw_only=True, tag="list"):
+    """The strings of a list."""
+
+    strings: Annotated[tuple[str, ...], Meta(min_length=1)]
 
     def items(self, keys: dict[str, int] | None) -> list[str]:
         """Return the strings as cells; as they are without keys, for texts and pictures."""
@@ -134,21 +133,8 @@ class StringList(Repeated, frozen=True, kw_only=True, tag="list"):
             cells = "".join(setting.random.sample(item, len(item))) if self.reorder else item
             return (Stimulus(cells, look),)
         cells = cells_of(item, look.table)
-        if not self.passage:
-            return (Stimulus(cells, look, text=item),)
-        return tuple(Stimulus(line, look, text=item) for line in broken(cells, setting.room(look)))
-
-
-class ItemList(Repeated, frozen=True, kw_only=True, tag="items"):
-    """The strings of the table [items], which `listed` puts in."""
-
-    reorder: bool = False
-    passage: bool = False
-
-    def listed(self, strings: list[str]) -> StringList:
-        """Return the design that shows some strings as this one shows its items."""
-        fields = {name: getattr(self, name) for name in self.__struct_fields__}
-        return StringList(strings=tuple(strings), **fields)
+        lines = broken(cells, setting.room(look)) if self.passage else [cells]
+        return tuple(Stimulus(line, look, text=item) for line in lines)
 
 
 class Combinations(Repeated, frozen=True, kw_only=True, tag="combinations"):
@@ -166,14 +152,6 @@ class Combinations(Repeated, frozen=True, kw_only=True, tag="combinations"):
     length: Annotated[int, Meta(ge=1, le=6)]
     before: str = ""
     after: str = ""
-
-    def spellings(self) -> dict[str, tuple[str, ...]]:
-        """Return the characters and the delimiters."""
-        return {
-            "design.characters": self.characters,
-            "design.before": (self.before,),
-            "design.after": (self.after,),
-        }
 
     def items(self, keys: dict[str, int] | None) -> list[str]:
         """Return the combinations as cells."""
@@ -218,29 +196,23 @@ class Compared(Repeated, frozen=True, kw_only=True, tag="choice"):
     same: Annotated[int, Meta(ge=0, le=10_000)] = 0
 
     def __post_init__(self) -> None:
+        form, alone = self.form, self.reference is None
         if len(set(self.values)) < len(self.values):
             raise WrongValue("values", "one is there twice")
-        if self.reference is None and self.form not in ("pairs", "single"):
-            raise WrongValue("form", f"is {self.form!r}, which needs a reference")
-        if self.reference is not None and self.form == "single":
-            raise WrongValue("reference", "is compared, and form is 'single'; leave one out")
-        if self.reference is None and self.form == "pairs" and len(self.values) < 2:
+        if alone and form not in ("pairs", "single"):
+            raise WrongValue("form", f"is {form!r}, which needs a reference")
+        again = self.reference in self.values and form != "standard"
+        if not alone and (form == "single" or again):
+            raise WrongValue("reference", "is one of values, or form is 'single'; leave it out")
+        if (self.same and form != "pairs") or (self.intervals != 2 and form != "one"):
+            raise WrongValue("form", "is 'pairs' for same, and 'one' for intervals")
+        if not self.of(self.values):
             raise WrongValue("values", "are fewer than two, of which none can be compared")
-        if self.reference in self.values and self.form != "standard":
-            raise WrongValue("reference", "is one of values; leave it out there")
-        if self.form != "pairs" and self.same:
-            raise WrongValue("same", "is of form = 'pairs'; leave it out")
-        if self.form != "one" and self.intervals != 2:
-            raise WrongValue("intervals", "are of form = 'one'; leave them out")
-
-    def spellings(self) -> dict[str, tuple[str, ...]]:
-        """Return the string."""
-        return {"design.string": (self.string,)}
 
     def items(self, keys: dict[str, int] | None) -> list[str]:
         """Return the values of the stimuli of each trial, with blanks between them."""
         alike = [(value, value) for value in self.values] * self.same
-        return [" ".join(f"{v:.9g}" for v in each) for each in [*self.of(self.values), *alike]]
+        return [values_said(each) for each in [*self.of(self.values), *alike]]
 
     def of(self, values: tuple[float, ...]) -> list[tuple[float, ...]]:
         """Return the values of the stimuli of each trial in which some values are shown."""
@@ -268,6 +240,11 @@ class Compared(Repeated, frozen=True, kw_only=True, tag="choice"):
             Stimulus(cells, look.changed(self.parameter, value), value=value)
             for value in map(float, item.split())
         )
+
+
+def values_said(values: tuple[float, ...]) -> str:
+    """Return the item that compared values are: the values, with blanks between them."""
+    return " ".join(f"{value:.9g}" for value in values)
 
 
 def _placed(pairs: list[tuple[float, float]], count: int) -> list[tuple[float, ...]]:

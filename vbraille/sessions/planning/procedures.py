@@ -16,7 +16,7 @@ from typing import Annotated, Literal, NamedTuple
 from msgspec import Meta
 
 from vbraille.adaptive.observer import Estimate, Grid, Quest, nearer, psychometric, steps
-from vbraille.adaptive.staircase import Asked, Rule, Staircases
+from vbraille.adaptive.staircase import Rule, Staircases
 from vbraille.sessions.planning.design import AnyDesign, Compared
 from vbraille.sessions.planning.questions import Question
 from vbraille.sessions.planning.trial import Trial
@@ -119,26 +119,21 @@ class Staircase(Procedure, frozen=True, kw_only=True, tag="staircase"):
         least, most = self.bounds(design)
         easier = 1.0 if self.target is None else self.target / (1 - self.target)
         less = self.harder == "less" or isinstance(design, Compared)
-        rules = [
-            Rule(
-                start, least, most, self.steps, self.right, self.wrong, easier, less, self.reversals
-            )
-            for start in self.start
-        ]
-        return Staircases(rules, seed)
+        moves = (self.steps, self.right, self.wrong, easier, less, self.reversals)
+        return Staircases([Rule(start, least, most, *moves) for start in self.start], seed)
 
     def _next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
-        level = self._staircases(design, seed).next(_asked(history))
+        level = self._staircases(design, seed).next(
+            [(level, positive) for (level, *_), positive, _ in history]
+        )
         return None if level is None else (level,)
 
     def found(self, design: AnyDesign, history: list[Outcome], seed: str) -> str:
         """Say the mean of the reversals."""
-        found = self._staircases(design, seed).estimate(_asked(history))
+        found = self._staircases(design, seed).estimate(
+            [(level, positive) for (level, *_), positive, _ in history]
+        )
         return "" if found is None else f"{found[0]:.3g}, the mean of {found[1]} reversals"
-
-
-def _asked(history: list[Outcome]) -> list[Asked]:
-    return [Asked(outcome.level[0], outcome.positive) for outcome in history]
 
 
 class QuestPlus(Procedure, frozen=True, kw_only=True, tag="quest"):
@@ -175,29 +170,25 @@ class QuestPlus(Procedure, frozen=True, kw_only=True, tag="quest"):
     at_least: Count = 10
 
     def _next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
-        quest = quest_of(self, design)
-        found = self._estimate(design, history)
+        found, asked = self._estimate(design, history)
         precise = (self.sd is not None and found.sd <= self.sd) or (
             self.width is not None and found.high - found.low <= self.width
         )
         if precise and len(history) >= self.at_least:
             return None
-        return quest.next(_levels(history))
+        return quest_of(self, design).next(asked)
 
-    def _estimate(self, design: AnyDesign, history: list[Outcome]) -> Estimate:
-        quest = quest_of(self, design)
-        return quest.estimate(next(iter(quest.grid.axes)), _levels(history))
+    def _estimate(self, design: AnyDesign, history: list[Outcome]) -> tuple[Estimate, list]:
+        """Estimate what is asked about, and return the answers as QUEST+ has them."""
+        quest, asked = quest_of(self, design), [(level, positive) for level, positive, _ in history]
+        return quest.estimate(next(iter(quest.grid.axes)), asked), asked
 
     def found(self, design: AnyDesign, history: list[Outcome], seed: str) -> str:
         """Say the estimate and its interval."""
         if not history:
             return ""
-        found = self._estimate(design, history)
+        found, _ = self._estimate(design, history)
         return f"{found.mean:.3g}, 95 % between {found.low:.3g} and {found.high:.3g}"
-
-
-def _levels(history: list[Outcome]) -> list[tuple[Level, bool]]:
-    return [(outcome.level, outcome.positive) for outcome in history]
 
 
 @lru_cache(maxsize=8)
@@ -210,33 +201,28 @@ def quest_of(table: QuestPlus, design: AnyDesign) -> Quest:
         If the values do not make a grid.
     """
     least, most = table.bounds(design)
+    compared = isinstance(design, Compared)
     try:
-        values = steps(least, most, table.step) if table.step else _of_design(design)
-        if isinstance(design, Compared) and design.reference is None:
-            furthest = table.furthest or most
-            pairs = [(a, b) for a in values for b in values if a < b and b - a <= furthest + 1e-9]
-            axes = {CENTRE: values, "spread": table.spread, "lapse": table.lapse}
-            return Quest(Grid(nearer(log=table.scale == "log"), axes), pairs, CENTRE)
-        guess = table.guess
-        if guess is None:
-            guess = (1 / alternatives(design),) if isinstance(design, Compared) else (0.0,)
-        axes = {THRESHOLD: values, "spread": table.spread, "guess": guess, "lapse": table.lapse}
-        falls = table.harder == "more" and not isinstance(design, Compared)
-        return Quest(
-            Grid(psychometric(table.shape, falls=falls), axes), [(v,) for v in values], THRESHOLD
-        )
+        if table.step:
+            values = steps(least, most, table.step)
+        elif compared:
+            away = (abs(value - (design.reference or 0.0)) for value in design.values)
+            values = tuple(sorted(round(level, PLACES) for level in away))
+        else:
+            raise ValueError("is missing; give the step from value to value")
+        axes = {"spread": table.spread, "lapse": table.lapse}
+        if compared and design.reference is None:
+            furthest = (table.furthest or most) + 1e-9
+            pairs = [(a, b) for a in values for b in values if a < b <= a + furthest]
+            grid = Grid(nearer(log=table.scale == "log"), {CENTRE: values, **axes})
+            return Quest(grid, pairs, CENTRE)
+        guess = table.guess or ((1 / alternatives(design),) if compared else (0.0,))
+        axes = {"spread": table.spread, "guess": guess, "lapse": table.lapse}
+        shape = psychometric(table.shape, falls=table.harder == "more" and not compared)
+        grid = Grid(shape, {THRESHOLD: values, **axes})
+        return Quest(grid, [(value,) for value in values], THRESHOLD)
     except ValueError as error:
-        if isinstance(error, WrongValue):
-            raise
         raise WrongValue("procedure.step", str(error)) from None
-
-
-def _of_design(design: AnyDesign) -> tuple[float, ...]:
-    """Return the levels that the design's own values are."""
-    if not isinstance(design, Compared):
-        raise WrongValue("procedure.step", "is missing; give the step from value to value")
-    reference = design.reference or 0.0
-    return tuple(sorted(round(abs(value - reference), PLACES) for value in design.values))
 
 
 def alternatives(design: Compared) -> int:

@@ -7,6 +7,7 @@ Ranges of values stand in the types. What several tables together can get wrong 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import Annotated, Any, Literal
 
 import msgspec
@@ -16,8 +17,8 @@ from vbraille.braille.spelling import spell, spell_string, to_braille
 from vbraille.display import Display
 from vbraille.render import MODELS, BrailleStyle, Model
 from vbraille.sessions.planning.analysis import Analysis
-from vbraille.sessions.planning.design import AnyDesign, Compared
-from vbraille.sessions.planning.factors import Cross, Factor, crossed
+from vbraille.sessions.planning.design import AnyDesign, Compared, values_said
+from vbraille.sessions.planning.factors import Condition, Cross, Factor, crossed
 from vbraille.sessions.planning.items import Items, OrderRow
 from vbraille.sessions.planning.procedures import AnyProcedure
 from vbraille.sessions.planning.questionnaire import Item
@@ -55,12 +56,6 @@ class DisplayLook(Look, frozen=True, kw_only=True):
 
     lead_cells: Annotated[int, Meta(ge=0, le=MOST_LEAD_CELLS)] = 1
     travel_mm: Annotated[float, Meta(gt=0, le=5000)] | None = None
-
-
-class Condition(Look, frozen=True, kw_only=True):
-    """A condition: its name, and what it changes of the display."""
-
-    name: Label
 
 
 class Order(Table, frozen=True, kw_only=True):
@@ -324,19 +319,18 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
         """Conditions: those that are listed, or all combinations of factors; at least one."""
         if all(factor.between for factor in self.factors):
             return self.listed or (Condition(name="all"),)
-        cells = crossed(self.factors, self.cross, between=False)
-        return tuple(Condition(name=cell.name, **cell.look.given) for cell in cells)
+        return tuple(cell for cell, _ in crossed(self.factors, self.cross, between=False))
 
     @property
     def groups(self) -> tuple[str, ...]:
         """Names of the groups of participants; none if all do the same."""
         cells = crossed(self.factors, self.cross, between=True)
-        return tuple(cell.name for cell in cells if cell.name)
+        return tuple(cell.name for cell, _ in cells if cell.name)
 
     def of_group(self, group: str) -> Protocol:
         """Return the protocol as a group has it."""
         cells = crossed(self.factors, self.cross, between=True)
-        look = next(cell.look for cell in cells if cell.name == group)
+        look = next(cell for cell, _ in cells if cell.name == group)
         display = msgspec.structs.replace(self.display, **look.given)
         return msgspec.structs.replace(self, display=display, group=group)
 
@@ -345,7 +339,7 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
         found: dict[str, str] = {}
         for between, name in ((False, condition), (True, group)):
             cells = crossed(self.factors, self.cross, between=between)
-            found |= next((cell.levels for cell in cells if cell.name == name), {})
+            found |= next((levels for cell, levels in cells if cell.name == name), {})
         return found
 
     def look(self, condition: str) -> Look:
@@ -423,12 +417,14 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
     def practised(self) -> list[str]:
         """The items of practice, each once."""
         if isinstance(self.design, Compared):
-            return [
-                " ".join(f"{v:.9g}" for v in each) for each in self.design.of(self.practice.values)
-            ]
+            return [values_said(values) for values in self.design.of(self.practice.values)]
+        return self.spelled(self.practice.strings)
+
+    def spelled(self, strings: Iterable[str]) -> list[str]:
+        """Return strings as cells; texts in print and names of pictures as they are."""
         if self.has_texts:
-            return list(self.practice.strings)
-        return [to_braille(spell_string(text, self.masks)) for text in self.practice.strings]
+            return list(strings)
+        return [to_braille(spell_string(string, self.masks)) for string in strings]
 
     @property
     def item_columns(self) -> tuple[str, ...]:
@@ -438,10 +434,9 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
     @property
     def marker_codes(self) -> dict[str, int]:
         """Byte of each condition."""
-        return {
-            condition.name: self.markers.codes.get(condition.name, min(FIRST_CODE + n, MOST_CODE))
-            for n, condition in enumerate(self.conditions)
-        }
+        names = [condition.name for condition in self.conditions]
+        free = {name: min(FIRST_CODE + n, MOST_CODE) for n, name in enumerate(names)}
+        return free | self.markers.codes
 
     @property
     def needs_pins(self) -> bool:

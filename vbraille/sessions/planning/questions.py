@@ -26,9 +26,10 @@ from vbraille.braille.spelling import (
     to_answer,
     to_braille,
 )
+from vbraille.devices.events import Button, Knob
 from vbraille.sessions.planning.spellings import parse_text
 from vbraille.sessions.planning.trial import Trial
-from vbraille.sessions.planning.values import Button, Label, Number, Positive, Sentence
+from vbraille.sessions.planning.values import ButtonNumber, Label, Number, Positive, Sentence
 from vbraille.sessions.simulated.feeling import LENGTHS, FeltTrial, nearer
 from vbraille.sessions.simulated.observer import LEAST_FELT, TIE
 from vbraille.toml import Table, WrongValue
@@ -102,7 +103,7 @@ class Question(Table, frozen=True, kw_only=True, tag_field="kind"):
     counts_catch = False  # whether catch trials are what is asked about
     scores = False  # whether a procedure can go by its answers
     alarm = ""  # answer that a false alarm is
-    confirms = False  # whether a typed answer is said back before it counts
+    confirm = False  # whether a typed answer is said back before it counts
 
     ask: str = ""
     confidence: Scale | None = None
@@ -116,13 +117,9 @@ class Question(Table, frozen=True, kw_only=True, tag_field="kind"):
         """Return by how many steps a line turns what is shown; None if it turns nothing."""
         return None
 
-    def by_button(self, number: int) -> str:
-        """Return the line that a button of the device stands for; empty for none."""
+    def controlled(self, control: Button | Knob, trial: Trial) -> str:
+        """Return the line that a button or a knob of the device stands for; empty for none."""
         return ""
-
-    def by_knob(self, number: int, share: float) -> float | None:
-        """Return the value at a place of a knob of the device; None if it turns nothing."""
-        return None
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
         """Return an answer in the spelling in which it is kept; ValueError if the text is none."""
@@ -548,27 +545,21 @@ class Pick(Question, frozen=True, kw_only=True, tag="name"):
                 raise WrongValue("choices", f"{word!r} is there twice")
 
     @property
-    def confirms(self) -> bool:
-        """Tell whether a typed answer is said back before it counts."""
-        return self.confirm
-
-    @property
     def typed(self) -> str:
         """The keys of each choice, and their names."""
         return "; ".join(each.typed for each in self.choices)
 
-    def by_button(self, number: int) -> str:
+    def controlled(self, control: Button | Knob, trial: Trial) -> str:
         """Return the key that a button stands for."""
-        keys = [key for each in self.choices for key in each.names]
-        return keys[number - 1] if self.buttons and number <= len(keys) else ""
+        keys = dict(enumerate((key for each in self.choices for key in each.names), 1))
+        return keys.get(control.number, "") if self.buttons and isinstance(control, Button) else ""
 
-    def marked(self, text: str, before: tuple[str, ...] = ()) -> tuple[str, ...]:
-        """Return the names that a line gives, over those given before; empty where none is yet."""
-        found = list(before) or [""] * len(self.choices)
+    def marked(self, text: str) -> list[str]:
+        """Return the name of each choice that a line gives last; empty where it gives none."""
+        found = [""] * len(self.choices)
         words = text.replace(",", " ").split()
         known = {w for each in self.choices for w in (*each.names, *each.names.values())}
-        marks = [mark for word in words for mark in ((word,) if word in known else word)]
-        for mark in marks:
+        for mark in (mark for word in words for mark in ((word,) if word in known else word)):
             for number, each in enumerate(self.choices):
                 name = each.names.get(mark, mark)
                 if name in each.names.values():
@@ -576,9 +567,9 @@ class Pick(Question, frozen=True, kw_only=True, tag="name"):
                     break
             else:
                 raise ValueError(f"{mark!r} is not an answer; type {self.typed}")
-        return tuple(found)
+        return found
 
-    def missing(self, names: tuple[str, ...]) -> str:
+    def missing(self, names: list[str]) -> str:
         """Return the keys of the first choice without a name; empty if all have one."""
         pairs = zip(self.choices, names, strict=True)
         return next((each.typed for each, name in pairs if not name), "")
@@ -636,8 +627,8 @@ class Adjust(Question, frozen=True, kw_only=True, tag="adjust"):
     step: Positive
     least: Number
     most: Number
-    knob: Button | None = None
-    buttons: Annotated[tuple[Button, ...], Meta(max_length=3)] = ()
+    knob: ButtonNumber | None = None
+    buttons: Annotated[tuple[ButtonNumber, ...], Meta(max_length=3)] = ()
 
     def __post_init__(self) -> None:
         if self.least + self.step > self.most:
@@ -652,17 +643,16 @@ class Adjust(Question, frozen=True, kw_only=True, tag="adjust"):
             return 0
         return word.count("+") - word.count("-") if word and not set(word) - {"+", "-"} else None
 
-    def by_button(self, number: int) -> str:
-        """Return the line that a button stands for."""
-        lines = zip(self.buttons, ("-", "+", "equal"), strict=False)
-        return dict(lines).get(number, "")
-
-    def by_knob(self, number: int, share: float) -> float | None:
-        """Return the value at a place of the knob, on a step."""
-        if number != self.knob:
-            return None
-        steps = round(share * (self.most - self.least) / self.step)
-        return self.turned(self.least, steps)
+    def controlled(self, control: Button | Knob, trial: Trial) -> str:
+        """Return the line that a button stands for, or a turn of the knob."""
+        if isinstance(control, Button):
+            lines = zip(self.buttons, ("-", "+", "equal"), strict=False)
+            return dict(lines).get(control.number, "")
+        if control.number != self.knob:
+            return ""
+        steps = round(control.value * (self.most - self.least) / self.step)
+        steps = round((self.turned(self.least, steps) - trial.values[-1]) / self.step)
+        return ("+" if steps > 0 else "-") * abs(steps)
 
     def turned(self, value: float, steps: int) -> float:
         """Return a value turned by some steps."""

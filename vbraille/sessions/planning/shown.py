@@ -8,7 +8,6 @@ import numpy as np
 
 from vbraille.braille.cells import dots_of
 from vbraille.braille.spelling import spell_string
-from vbraille.render import BrailleStyle
 from vbraille.render.program import Program
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.trial import Stimulus
@@ -46,16 +45,27 @@ def make_shown(protocol: Protocol, stimulus: Stimulus) -> Shown:
         program = compile_picture(protocol, stimulus)
         return Shown(program, None, (), canvas_mm(protocol, stimulus))
     style = protocol.style(stimulus.look)
-    masks = stimulus.masks(protocol.display.lead_cells)
-    program = style.render(np.array(masks, np.uint8), protocol.display_model.display)
-    return Shown(program, style.geometry.extent_mm(len(masks)), edges_mm(masks, style))
+    masks = np.array(stimulus.masks(protocol.display.lead_cells), np.uint8)
+    program = style.render(masks, protocol.display_model.display)
+    return Shown(program, width_mm(protocol, stimulus), edges_mm(protocol, stimulus))
 
 
-def edges_mm(masks: list[int], style: BrailleStyle) -> tuple[float, ...]:
+def width_mm(protocol: Protocol, stimulus: Stimulus) -> float:
+    """Return the length of the line that a string is in, or the width of a picture's canvas."""
+    if stimulus.picture:
+        from vbraille.sessions.planning.pictures import canvas_mm
+
+        return canvas_mm(protocol, stimulus)[0]
+    cells = stimulus.masks(protocol.display.lead_cells)
+    return protocol.style(stimulus.look).geometry.extent_mm(len(cells))
+
+
+def edges_mm(protocol: Protocol, stimulus: Stimulus) -> tuple[float, ...]:
     """Return the left edges of the dot columns that a display shows, left to right."""
+    style = protocol.style(stimulus.look)
     shown, geometry = style.mapping.shown_dots(), style.geometry
     edges: list[float] = []
-    for cell, mask in enumerate(masks):
+    for cell, mask in enumerate(stimulus.masks(protocol.display.lead_cells)):
         dots = set(dots_of(mask & shown))
         start_mm = cell * geometry.cell_pitch_mm
         edges += [start_mm] if dots & LEFT_DOTS else []

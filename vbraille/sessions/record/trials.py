@@ -15,7 +15,7 @@ from vbraille.files import no_formula
 from vbraille.sessions.planning.loading import parse_protocol
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import edges_mm
-from vbraille.sessions.planning.trial import Stimulus, Trial
+from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.record.movement import duration, pauses
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Content, Event, reading
@@ -254,7 +254,7 @@ class _Table:
         if "line" not in cues[-1].data:
             end = _last(own, "read")
             return {} if end is None else {"duration_s": round(end.t_s - cues[-1].t_s, 6)}
-        edges = self._edges_mm(first)
+        edges = edges_mm(self._protocol, first)
         if not edges:
             return {}
         line = cues[-1].data["line"]
@@ -271,10 +271,6 @@ class _Table:
         read = ticks[found.ticks]
         last_mm = edges[-1] + self._protocol.style(first.look).geometry.dot_width_mm
         return row | describe(read["x_mm"], read["time_ns"], edges[0], last_mm)
-
-    def _edges_mm(self, stimulus: Stimulus) -> tuple[float, ...]:
-        masks = stimulus.masks(self._protocol.display.lead_cells)
-        return edges_mm(masks, self._protocol.style(stimulus.look))
 
     def _read_passage(
         self, db: sqlite3.Connection, trial: Trial, own: list[Event], paused_s: float
@@ -294,7 +290,7 @@ class _Table:
         for number, stimulus in enumerate(trial.stimuli):
             ticks = read_ticks(db, cues[number], cues[number])
             half_mm = self._protocol.style(stimulus.look).geometry.cell_pitch_mm / 2
-            lines.append(pauses(ticks, self._edges_mm(stimulus)[0], span_mm, half_mm))
+            lines.append(pauses(ticks, edges_mm(self._protocol, stimulus)[0], span_mm, half_mm))
         number, seconds, back = map(sum, zip(*lines, strict=True))
         return row | {
             "hand_pauses": number, "hand_paused_s": round(seconds, 3), "regressions": back

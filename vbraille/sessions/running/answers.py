@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Iterable
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, Literal, NamedTuple, Protocol
+from typing import Any, Literal, NamedTuple
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.questionnaire import Item
@@ -59,8 +59,8 @@ class NoMoreAnswers(Exception):
     """There will be no more answers; the session stops, and can be resumed."""
 
 
-class Answers(Protocol):
-    """A source of answers.
+class Answers:
+    """A source of answers, which is asked for each one in turn.
 
     Attributes
     ----------
@@ -70,11 +70,12 @@ class Answers(Protocol):
         Whether a person types, who is waited for at breaks and gives commands at any time.
     felt : bool
         Whether it needs what was felt.
+    awaits_key : bool
+        Whether the participant's key would end reading now.
     """
 
-    name: str
-    typed: bool
-    felt: bool
+    name = "program"
+    typed = felt = awaits_key = False
 
     def line(self, asked: Asked | None, wait_s: float) -> Line | Press | None:
         """Return a line, or None if there is none within some time.
@@ -86,32 +87,37 @@ class Answers(Protocol):
         NoMoreAnswers
             If there will be none.
         """
-        ...
+        if asked is None:
+            time.sleep(wait_s)
+            return None
+        return Line("") if asked.what == "go" else self.give(asked)
+
+    def give(self, asked: Asked) -> Line:
+        """Return the line for what is asked."""
+        raise NotImplementedError
+
+    def watch(self, key: str) -> bool:
+        """Look out for the participant's key; return whether that is possible."""
+        return False
+
+    def take(self) -> None:
+        """Take the terminal."""
+
+    def release(self) -> None:
+        """Leave the terminal to another program."""
 
 
-class Typed:
-    """Lines from standard input.
-
-    Attributes
-    ----------
-    awaits_key : bool
-        Whether the participant's key would end reading now.
-    """
+class Typed(Answers):
+    """Lines from standard input."""
 
     name = "typed"
     typed = True
-    felt = False
-    awaits_key = False
 
     def __init__(self) -> None:
         self._descriptor = sys.stdin.fileno() if sys.stdin else -1
         self._partial = b""
         self._given: list[Line | Press] = []
         self._over = self._descriptor < 0
-
-    def watch(self, key: str) -> bool:
-        """Look out for the participant's key; return whether that is possible."""
-        return False
 
     def line(self, asked: Asked | None, wait_s: float) -> Line | Press | None:
         """Return a line that was typed."""
@@ -137,33 +143,8 @@ class Typed:
             lines.append(self._partial)
         self._given += [Line(line.decode("utf-8", "replace")) for line in lines]
 
-    def release(self) -> None:
-        """Leave the terminal to another program."""
 
-    def take(self) -> None:
-        """Take the terminal again."""
-
-
-class InTurn:
-    """A source that is asked for each answer in turn."""
-
-    name = "program"
-    typed = False
-    felt = False
-
-    def line(self, asked: Asked | None, wait_s: float) -> Line | None:
-        """Return the line for what is asked; wait if nothing is."""
-        if asked is None:
-            time.sleep(wait_s)
-            return None
-        return Line("") if asked.what == "go" else self.give(asked)
-
-    def give(self, asked: Asked) -> Line:
-        """Return the line for what is asked."""
-        raise NotImplementedError
-
-
-class Scripted(InTurn):
+class Scripted(Answers):
     """Lines of a file. Empty lines, and lines that begin with #, are left out.
 
     Parameters
@@ -195,7 +176,7 @@ class Scripted(InTurn):
         return self._left.pop(0)
 
 
-class Programmed(InTurn):
+class Programmed(Answers):
     """Answers of a program.
 
     Parameters

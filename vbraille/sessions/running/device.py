@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import replace
-from typing import Any, NamedTuple
+from dataclasses import asdict, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,21 +18,19 @@ from vbraille.devices.events import Button, Knob, Placing
 from vbraille.devices.registry import TRAVEL_TOLERANCE_MM, find_driver, open_device
 from vbraille.display import Display
 from vbraille.engine.batch import BatchEngine
-from vbraille.engine.engine import Engine, placing_of
+from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host
 from vbraille.engine.record import Flag, RingReader
 from vbraille.errors import InputError
-from vbraille.live.messages import LetGo, Point
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocol import Protocol
-from vbraille.sessions.planning.shown import Shown, make_shown
+from vbraille.sessions.planning.shown import Shown, make_shown, width_mm
+from vbraille.sessions.planning.trial import Stimulus
+from vbraille.sessions.running.presenter import Happening, Presenter
 from vbraille.sessions.simulated.skin import FeltFrames
 from vbraille.simulation import steering
-from vbraille.simulation.specs import device_spec
+from vbraille.simulation.specs import device_spec, is_simulated
 from vbraille.wording import setting
-
-# Makes the engine that drives a device, from the device's spec and the display that is wanted.
-MakeEngine = Callable[[str, Display], Engine]
 
 # A plain number: numpy, when it reads an enumeration, can swallow an exception of a signal.
 _PAUSED = int(Flag.PAUSED)
@@ -41,29 +39,12 @@ _TOLD_S = 1.0  # from one fault that is told of a trial to the next
 _SCAN_MM = 10.0  # between the lines that a simulated hand goes along over a picture
 
 
-class Happening(NamedTuple):
-    """Something that the hand or the device did.
-
-    Parameters
-    ----------
-    kind, time_s, data
-        Kind of the event, when it was by the session's clock, and what else the record has.
-    said
-        Sentence for the experimenter; empty for none.
-    """
-
-    kind: str
-    time_s: float
-    data: dict[str, Any]
-    said: str = ""
-
-
-class SessionDevice:
+class SessionDevice(Presenter):
     """A device that a session runs on.
 
     Parameters
     ----------
-    protocol, plan
+    protocol
         What is shown.
     spec, hand
         Spec of the device, and of the hand that moves a simulated one.
@@ -79,30 +60,21 @@ class SessionDevice:
         Whether frames are kept for a simulated reader.
     by_hand
         Whether the hand's way to the end and back ends reading, and not a key alone.
-    make_engine
-        Function that makes another engine than the usual one.
     watched
         Function that is given a reader of the ticks at each start, for a live view, whose pages may
-        be the hand of a simulated device; None without one.
+        be the hand of a simulated device.
 
     Attributes
     ----------
-    ready : bool
-        Whether a trial may begin: the device works, and the array is at the left.
-    read, ended, reached : bool
-        Whether the stimulus was read; whether a key or the time ended that; whether the hand has
-        been at its end.
     newest : record or None
         The newest tick.
     """
 
     by_key = False
-    why = ""
 
     def __init__(
         self,
         protocol: Protocol,
-        plan: Plan,
         spec: str,
         hand: str,
         *,
@@ -112,46 +84,30 @@ class SessionDevice:
         line: int,
         keeps: bool,
         by_hand: bool,
-        make_engine: MakeEngine | None = None,
-        watched: Callable[[RingReader], None] | None = None,
+        watched: Callable[[RingReader], None] | None,
     ) -> None:
-        self.wanted = replace(protocol.wanted, rate_hz=rate_hz)
-        self.span_mm = self.wanted.span_mm
+        super().__init__()
+        wanted = replace(protocol.wanted, rate_hz=rate_hz)
         self.line = line
-        self.ready = self.read = self.ended = False
         self.newest: np.void | None = None
-        self._real = not fast
-        self._keeps, self._by_hand = keeps, by_hand
-        self._button = protocol.trial.button
+        self._protocol, self._span_mm = protocol, wanted.span_mm
+        self._real, self._keeps, self._by_hand = not fast, keeps, by_hand
         self._watched = watched
-        self.engine: Engine
+        self._is_simulated = is_simulated(spec)
         spec = device_spec(spec, hand, seed)
-        if make_engine is not None:
-            self.engine = make_engine(spec, self.wanted)
-        elif fast:
-            self.engine = BatchEngine(open_device(spec, self.wanted), self.wanted.rate_hz)
+        self.engine: BatchEngine | Host
+        if fast:
+            self.engine = BatchEngine(open_device(spec, wanted), rate_hz)
         else:
             find_driver(spec)
-            self.engine = Host(spec, self.wanted)
+            self.engine = Host(spec, wanted)
         self._felt: list[list[NDArray[np.void]]] = []
-        self._shown: Shown | None = None
+        self._under: Shown | None = None  # the hand
         self._first_line = line + 1
         self._shown_s = self._told_s = 0.0
-        self._touched = self._at_end = self._is_away = False
+        self._is_ready = self._touched = self._at_end = self._is_away = False
         self._placing = Placing.DONE
         self._controls: list[Button | Knob] = []
-
-    def start(self) -> None:
-        """Open the device; again after the engine died."""
-        self.engine.start()
-        self.engine.paused = True
-        self.newest = self._shown = None
-        if self._watched is not None and isinstance(self.engine, Host):
-            self._watched(self.engine.reader())
-
-    def close(self) -> None:
-        """Bring the array to rest, and close the device."""
-        self.engine.close()
 
     @property
     def display(self) -> Display:
@@ -159,16 +115,13 @@ class SessionDevice:
         return self.engine.display
 
     @property
-    def steered(self) -> bool:
-        """Tell whether a page of the live view may be the hand."""
-        return self.engine.steered
-
-    def lead(self, asked: Point | LetGo) -> None:
-        """Hold the simulated hand at a place, or let it go."""
-        if isinstance(asked, Point):
-            self.engine.give(steering.Hold(asked.x_mm, asked.y_mm, asked.theta_rad))
-        else:
-            self.engine.give(steering.LetGo())
+    def told(self) -> dict[str, Any]:
+        """What the event of a run says of it."""
+        return {
+            "display": asdict(self.display),
+            "calibration": self.engine.calibration,
+            "simulated": self._is_simulated,
+        }
 
     @property
     def now_s(self) -> float:
@@ -178,23 +131,39 @@ class SessionDevice:
         return 0.0 if self.newest is None else int(self.newest["time_ns"]) / 1e9
 
     @property
+    def ready(self) -> bool:
+        """True if the device works, and the array is at the left."""
+        return self._is_ready
+
+    @property
     def reached(self) -> bool:
         """True if the hand has been at the end of the stimulus; a picture has none."""
-        no_end = self._shown is None or self._shown.end_mm is None
+        no_end = self._under is None or self._under.end_mm is None
         return self.read or no_end or self._at_end
 
-    def show(self, shown: Shown, *, first: bool = True, turned: bool = False) -> None:
-        """Put a stimulus under the hand as the next showing.
+    def start(self) -> None:
+        """Open the device; again after the engine died."""
+        self.engine.start()
+        self.engine.paused = True
+        self.newest = self._under = None
+        if self._watched is not None and isinstance(self.engine, Host):
+            self._watched(self.engine.reader())
 
-        Parameters
-        ----------
-        shown
-            The stimulus.
-        first
-            Whether it is the first of a trial.
-        turned
-            Whether it takes the place of the last one, at another value.
-        """
+    def close(self) -> dict[str, Any]:
+        """Bring the array to rest, and close the device."""
+        self.engine.close()
+        counts = {name: number for name, number in self.engine.counts.items() if number}
+        return {"lost": self.engine.lost, "counts": counts}
+
+    def prepare(self, stimulus: Stimulus) -> dict[str, Any]:
+        """Compile a stimulus, and return the number of the next showing."""
+        self._under = make_shown(self._protocol, stimulus)
+        return {"line": self.line + 1}
+
+    def show(self, *, first: bool, turned: bool) -> None:
+        """Put what was prepared under the hand, as the next showing."""
+        assert self._under is not None, "it is prepared"
+        super().show(first=first, turned=turned)
         if first:
             self._felt = []
             self._told_s = -_TOLD_S
@@ -202,16 +171,17 @@ class SessionDevice:
         self.line += 1
         if not turned:
             self._first_line = self.line
-        self._shown, self._shown_s = shown, self.now_s
-        self._touched = self._at_end = self._is_away = self.read = self.ended = False
-        self.engine.show(shown.program, self.line, shown.end_mm)
+        self._shown_s = self.now_s
+        self._touched = self._at_end = self._is_away = False
+        end_mm, canvas_mm = self._under.end_mm, self._under.canvas_mm
+        self.engine.show(self._under.program, self.line, end_mm)
         self.engine.paused = False
-        if shown.canvas_mm is not None:
-            width_mm, height_mm = shown.canvas_mm
+        if canvas_mm is not None:
+            width_mm, height_mm = canvas_mm
             lines = max(1, round(height_mm / _SCAN_MM))
             self.engine.give(steering.ReadPage(lines, height_mm / lines, width_mm))
-        elif shown.end_mm is not None:
-            self.engine.give(steering.ReadLine(shown.end_mm))
+        elif end_mm is not None:
+            self.engine.give(steering.ReadLine(end_mm))
 
     def rest(self) -> None:
         """Bring the array to rest."""
@@ -219,17 +189,12 @@ class SessionDevice:
 
     def go(self) -> None:
         """Let the stimulus be felt again after a rest, unless its reading was ended."""
-        self.engine.paused = self._shown is None or self.ended
-
-    def end_reading(self) -> None:
-        """Bring the array to rest, since a key or the time has ended reading."""
-        self.read = self.ended = True
-        self.rest()
+        self.engine.paused = self._under is None or self.ended
 
     def withdraw(self) -> None:
         """Take the stimulus away."""
         self.rest()
-        self._shown = None
+        self._under = None
 
     def confirm(self) -> bool:
         """Take Enter as the sign that the carriage is at its left stop; False if it is not that."""
@@ -268,11 +233,11 @@ class SessionDevice:
         ]
         if ticks.size:
             self.newest = ticks[-1]
-            anywhere = self._shown is not None and self._shown.canvas_mm is not None
+            anywhere = self._under is not None and self._under.canvas_mm is not None
             works = not int(ticks["flags"][-1]) & _AWAY
-            self.ready = works if anywhere else self.engine.ready
-            if self._shown is not None:
-                found += self._follow(ticks, self._shown)
+            self._is_ready = works if anywhere else self.engine.ready
+            if self._under is not None:
+                found += self._follow(ticks, self._under)
         for event in given:
             found += self._heard(event)
         return ticks, sorted(found, key=lambda each: each.time_s)
@@ -295,7 +260,7 @@ class SessionDevice:
             self._at_end = self._at_end or bool((ticks["x_mm"] >= shown.end_mm).any())
         if self._touched or not shown.edges_mm:
             return []
-        on = np.flatnonzero(ticks["x_mm"] + self.span_mm / 2 >= shown.edges_mm[0])
+        on = np.flatnonzero(ticks["x_mm"] + self._span_mm / 2 >= shown.edges_mm[0])
         self._touched = bool(on.size)
         if not on.size:
             return []
@@ -306,7 +271,7 @@ class SessionDevice:
         """Return what an event of the device or the engine is to the session."""
         if isinstance(event, events.HandHeld):
             return [Happening("hand", self.now_s, {"held": event.held})]
-        if self._shown is None:
+        if self._under is None:
             return []
         match event:
             case events.LineRead() if event.line == self.line and self._may_read:
@@ -325,7 +290,7 @@ class SessionDevice:
                 return [_at("well", event.tick, event.time_ns)]
             case Knob():
                 self._controls.append(event)
-            case Button(pressed=True) if event.number != self._button:
+            case Button(pressed=True) if event.number != self._protocol.trial.button:
                 self._controls.append(event)
             case Button(pressed=True) if not self.ended:
                 at_s = self.now_s if event.at_ns is None else event.at_ns / 1e9
@@ -348,31 +313,20 @@ def check_room(protocol: Protocol, plan: Plan, display: Display) -> None:
     InputError
         If it is too short, or goes along a line where pictures are shown.
     """
-    for shown in _all_shown(protocol, plan):
-        if shown.canvas_mm is not None and not display.height_mm:
-            raise InputError(
-                f"{protocol.name} shows pictures, and the carriage of {display.name} goes along x "
-                f"only; choose another {setting('device')}"
-            )
-        if shown.canvas_mm is not None:
-            needed_mm = shown.canvas_mm[0]
-        else:
-            needed_mm = (shown.end_mm or 0.0) + display.span_mm
-        if needed_mm > display.travel_mm + TRAVEL_TOLERANCE_MM:
-            raise InputError(
-                f"the carriage of {display.name} travels {display.travel_mm:g} mm, and "
-                f"{protocol.name} needs {needed_mm:.1f} mm; choose another {setting('device')}"
-            )
-
-
-def _all_shown(protocol: Protocol, plan: Plan) -> Iterable[Shown]:
-    """Return the longest line and each picture of a plan, compiled."""
-    stimuli = [s for trial in plan.trials for s in trial.stimuli if s.on == "device"]
-    pictures = {(s.look.scene, s.picture): s for s in stimuli if s.picture}
-    lead = protocol.display.lead_cells
-    lines = [s for s in stimuli if not s.picture]
-    longest = {repr(s.look): s for s in sorted(lines, key=lambda s: len(s.masks(lead)))}
-    return [make_shown(protocol, s) for s in (*pictures.values(), *longest.values())]
+    stimuli = {s for trial in plan.trials for s in trial.stimuli if s.on == "device"}
+    if not display.height_mm and any(stimulus.picture for stimulus in stimuli):
+        raise InputError(
+            f"{protocol.name} shows pictures, and the carriage of {display.name} goes along x "
+            f"only; choose another {setting('device')}"
+        )
+    spans_mm = [0.0 if stimulus.picture else display.span_mm for stimulus in stimuli]
+    widths_mm = [width_mm(protocol, stimulus) for stimulus in stimuli]
+    needed_mm = max(map(sum, zip(widths_mm, spans_mm, strict=True)), default=0.0)
+    if needed_mm > display.travel_mm + TRAVEL_TOLERANCE_MM:
+        raise InputError(
+            f"the carriage of {display.name} travels {display.travel_mm:g} mm, and "
+            f"{protocol.name} needs {needed_mm:.1f} mm; choose another {setting('device')}"
+        )
 
 
 def _at(kind: str, tick: int, time_ns: int, **data: Any) -> Happening:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 from msgspec import structs
@@ -25,10 +25,9 @@ from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_
 from vbraille.live.view import LiveView
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.running.device import SessionDevice
+from vbraille.sessions.running.runner import Runner
+from vbraille.simulation import steering
 from vbraille.wording import setting
-
-if TYPE_CHECKING:
-    from vbraille.sessions.running.runner import Runner
 
 # Sentences begin with a word for their kind. Those of these kinds hold no stimulus and no answer.
 SAFE = frozenset(
@@ -79,8 +78,8 @@ class SessionView:
                 f"or {setting('fast')} is given; leave one of them out"
             )
         self.blind = protocol.session.blind
+        self.described = {"blind": self.blind, "host": host or "127.0.0.1"}
         self._view: LiveView | None = LiveView(host=host, port=port, blind=self.blind)
-        self._host = host or "127.0.0.1"
         self._say = say
         self._said: deque[str] = deque(maxlen=MOST_SAID)
         self._count = 0
@@ -96,11 +95,6 @@ class SessionView:
         view, self._view = self._view, None
         if view is not None:
             view.__exit__(*exception)
-
-    @property
-    def described(self) -> dict[str, Any]:
-        """Description of it for the record."""
-        return {"blind": self.blind, "host": self._host}
 
     def say(self, sentence: str) -> None:
         """Say a sentence to the experimenter, and to the pages if they may hear it."""
@@ -119,107 +113,92 @@ class SessionView:
         """Tell the pages what has changed, and lead the simulated hand as they ask."""
         if self._view is None:
             return
-        assert isinstance(runner.device, SessionDevice)
+        device = runner.device
+        assert isinstance(device, SessionDevice)
         for asked in self._view.take():
-            if isinstance(asked, Point | LetGo):
-                runner.device.lead(asked)
+            if isinstance(asked, Point):
+                device.engine.give(steering.Hold(asked.x_mm, asked.y_mm, asked.theta_rad))
+            elif isinstance(asked, LetGo):
+                device.engine.give(steering.LetGo())
         for note in self._view.notes():
             self._say(note)
         try:
-            state = state_of(runner, runner.device, list(self._said), self._count, self.blind)
-            self._view.tell(state)
+            self._view.tell(self._state(runner, device))
         except Exception as fault:  # whatever it is, the session goes on
             _log.info("the live view failed: %r", fault)
             self._say("live view: ended by a fault; the session goes on")
             self.__exit__(None, None, None)
 
+    def _state(self, runner: Runner, device: SessionDevice) -> ViewState:
+        """Return what pages show."""
+        protocol, trial, newest = runner.protocol, runner.trial, device.newest
+        style = protocol.style(protocol.display)
+        facts = []
+        if trial is not None:
+            facts.append(("trial", runner.name))
+            if len(trial.stimuli) > 1 and runner.is_shown:
+                which = f"{ordinal(runner.stimulus)} of {len(trial.stimuli)}"
+                facts.append(("stimulus", which))
+            if runner.attempt > 1:
+                facts.append(("attempt", str(runner.attempt)))
+        minutes, seconds = divmod(int(runner.elapsed_s), 60)
+        facts.append(("answered", str(runner.progress.done)))
+        facts.append(("time", f"{minutes} min {seconds:02} s"))
+        state = ViewState(
+            title=protocol.title,
+            array=array_shown(device.display),
+            geometry=geometry_shown(style.geometry),
+            rows_shown=rows_shown(style, device.display),
+            place=f"waits for {runner.waits_for}" if runner.waits_for else "",
+            paused=runner.paused,
+            simulated=device.engine.steered,
+            device="device: starts" if newest is None else f"device: {_state_of(newest)}",
+            said=list(self._said),
+            said_before=self._count - len(self._said),
+            facts=facts,
+            blind=self.blind,
+            done=runner.is_over,
+        )
+        if self.blind or trial is None:
+            return state
+        return structs.replace(state, **_unhidden(facts, runner, device))
 
-def state_of(
-    runner: Runner, device: SessionDevice, said: list[str], count: int, blind: bool
-) -> ViewState:
-    """Return the state that pages show.
 
-    Parameters
-    ----------
-    runner, device
-        The session, and what it runs on.
-    said, count
-        The last sentences that pages may be told, oldest first, and how many there were in all.
-    blind
-        Whether the state may tell nothing of stimuli and answers.
-    """
-    protocol = runner.protocol
-    style = protocol.style(protocol.display)
-    state = ViewState(
-        title=protocol.title,
-        array=array_shown(device.display),
-        geometry=geometry_shown(style.geometry),
-        rows_shown=rows_shown(style, device.display),
-        place=f"waits for {runner.waits_for}" if runner.waits_for else "",
-        paused=runner.paused,
-        simulated=device.steered,
-        device=_say_device(device.newest),
-        said=said,
-        said_before=count - len(said),
-        facts=_facts(runner),
-        blind=blind,
-        done=runner.is_over,
-    )
-    return state if blind else _unhidden(state, runner, device)
-
-
-def _unhidden(state: ViewState, runner: Runner, device: SessionDevice) -> ViewState:
-    """Return the state with all that a blind one keeps back."""
+def _unhidden(
+    facts: list[tuple[str, str]], runner: Runner, device: SessionDevice
+) -> dict[str, Any]:
+    """Return what a blind state keeps back of the open trial."""
     protocol, trial = runner.protocol, runner.trial
-    if trial is None:
-        return state
-    facts = [*state.facts, ("condition", trial.condition)]
+    assert trial is not None
+    facts = [*facts, ("condition", trial.condition)]
     if not runner.is_shown or runner.presenter.by_key:
-        return structs.replace(state, facts=facts)
+        return {"facts": facts}
     stimulus = trial.stimuli[runner.stimulus]
-    style = protocol.style(stimulus.look)
-    facts += [("contrast", f"{style.tuning.contrast:g}"), ("texture", f"{style.tuning.texture:g}")]
-    lines = []
-    if stimulus.picture:
-        facts.append(("asked for", stimulus.picture))
-    else:
-        facts.append(("asked for", say_cells(stimulus.cells, protocol.masks)))
+    style, lines = protocol.style(stimulus.look), []
+    if not stimulus.picture:
         masks = stimulus.masks(protocol.display.lead_cells)
         lines.append(cells_shown(device.line, masks, stimulus.text, under=True))
-    return structs.replace(
-        state,
-        facts=facts,
-        geometry=geometry_shown(style.geometry),
-        mapping=f"mapping: {style.mapping.name}",
-        rows_shown=rows_shown(style, device.display),
-        lines=lines,
-    )
+    facts += [
+        ("contrast", f"{style.tuning.contrast:g}"),
+        ("texture", f"{style.tuning.texture:g}"),
+        ("asked for", stimulus.picture or say_cells(stimulus.cells, protocol.masks)),
+    ]
+    return {
+        "facts": facts,
+        "geometry": geometry_shown(style.geometry),
+        "mapping": f"mapping: {style.mapping.name}",
+        "rows_shown": rows_shown(style, device.display),
+        "lines": lines,
+    }
 
 
-def _facts(runner: Runner) -> list[tuple[str, str]]:
-    """Return how far the session is; nothing here depends on stimuli or answers."""
-    progress, trial = runner.progress, runner.trial
-    facts: list[tuple[str, str]] = []
-    if trial is not None:
-        facts.append(("trial", runner.name))
-        if len(trial.stimuli) > 1 and runner.is_shown:
-            facts.append(("stimulus", f"{ordinal(runner.stimulus)} of {len(trial.stimuli)}"))
-        if runner.attempt > 1:
-            facts.append(("attempt", str(runner.attempt)))
-    minutes, seconds = divmod(int(runner.elapsed_s), 60)
-    facts += [("answered", str(progress.done)), ("time", f"{minutes} min {seconds:02} s")]
-    return facts
-
-
-def _say_device(newest: np.void | None) -> str:
-    """Return a sentence on the state of the device, by its newest tick."""
-    if newest is None:
-        return "device: starts"
+def _state_of(newest: np.void) -> str:
+    """Return words for the state of the device at its newest tick."""
     flags = int(newest["flags"])
     if flags & int(Flag.SILENT):
-        return "device: silent"
+        return "silent"
     if placing_of(newest) is not Placing.DONE:
-        return "device: its place is not known"
+        return "its place is not known"
     if flags & int(Flag.HELD):
-        return "device: at rest by itself"
-    return "device: turned too far" if flags & int(Flag.TURNED) else "device: in use"
+        return "at rest by itself"
+    return "turned too far" if flags & int(Flag.TURNED) else "in use"

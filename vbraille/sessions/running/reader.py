@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from hashlib import sha256
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from msgspec import structs
@@ -14,60 +12,49 @@ from msgspec import structs
 from vbraille.errors import InputError
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocol import Protocol
-from vbraille.sessions.planning.shown import make_shown
-from vbraille.sessions.planning.trial import Stimulus, Trial
-from vbraille.sessions.running.answers import Asked, InTurn, Line
+from vbraille.sessions.planning.shown import edges_mm, make_shown
+from vbraille.sessions.planning.trial import Trial
+from vbraille.sessions.running.answers import Answers, Asked, Line
 from vbraille.sessions.simulated.feeling import CELL_GAP, LENGTHS, DotPair, FeltTrial
-from vbraille.sessions.simulated.matching import FeltPicture, PictureFrames, differences
+from vbraille.sessions.simulated.matching import FeltPicture, differences
 from vbraille.sessions.simulated.observer import Observer
 
 MOST_NOISE = 100.0
 INSTEAD = "type the answers, or give a file of them"
 
 
-class Habits(NamedTuple):
-    """Habits of a simulated reader.
+def parse_habits(text: str) -> dict[str, float]:
+    """Read what follows "simulated:", such as "0.4,lapses=0.05,false-alarms=0.1".
 
-    Parameters
-    ----------
-    noise
-        Standard deviation of the noise, in units of a perfect dot or of the nominal length.
-    lapses
-        Share of the trials that are answered by chance alone.
-    false_alarms
-        Share of the other trials that are answered "yes" or "different" whatever was felt.
+    Returns
+    -------
+    dict
+        "noise": its standard deviation, in units of a perfect dot or of the nominal length.
+        "lapses": share of the trials that are answered by chance alone. "false-alarms": share of
+        the other trials that are answered "yes" or "different" whatever was felt.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or is out of range.
     """
-
-    noise: float = 0.0
-    lapses: float = 0.0
-    false_alarms: float = 0.0
-
-    @classmethod
-    def parse(cls, text: str) -> Habits:
-        """Read what follows "simulated:", such as "0.4,lapses=0.05,false-alarms=0.1".
-
-        Raises
-        ------
-        InputError
-            If it cannot be read, or is out of range.
-        """
-        most = {"noise": MOST_NOISE, "lapses": 1.0, "false-alarms": 1.0}
-        found = {}
-        for part in filter(None, text.split(",")):
-            name, _, number = part.rpartition("=")
-            name = name or "noise"
-            try:
-                value = float(number)
-            except ValueError:
-                value = -1.0
-            if name not in most or not 0 <= value <= most[name]:
-                raise InputError(
-                    f"{part!r} is no habit of a simulated reader; give noise from 0 to "
-                    f"{MOST_NOISE:g}, lapses and false-alarms from 0 to 1, such as "
-                    f"simulated:0.2,lapses=0.05"
-                )
-            found[name.replace("-", "_")] = value
-        return cls(**found)
+    most = {"noise": MOST_NOISE, "lapses": 1.0, "false-alarms": 1.0}
+    found = dict.fromkeys(most, 0.0)
+    for part in filter(None, text.split(",")):
+        name, _, number = part.rpartition("=")
+        name = name or "noise"
+        try:
+            value = float(number)
+        except ValueError:
+            value = -1.0
+        if not 0 <= value <= most.get(name, -1.0):
+            raise InputError(
+                f"{part!r} is no habit of a simulated reader; give noise from 0 to "
+                f"{MOST_NOISE:g}, lapses and false-alarms from 0 to 1, such as "
+                f"simulated:0.2,lapses=0.05"
+            )
+        found[name] = value
+    return found
 
 
 def simulated_answers(protocol: Protocol, plan: Plan, habits: str) -> Simulated:
@@ -78,19 +65,17 @@ def simulated_answers(protocol: Protocol, plan: Plan, habits: str) -> Simulated:
     InputError
         If the habits cannot be read, or the reader cannot feel what the protocol shows.
     """
-    conditions = {trial.condition for trial in plan.trials}
-    on_pins = any(s.on == "pins" for trial in plan.trials for s in trial.stimuli)
-    if protocol.medium == "paper" or on_pins:
+    stimuli = [stimulus for trial in plan.trials for stimulus in trial.stimuli]
+    if protocol.medium == "paper" or any(stimulus.on == "pins" for stimulus in stimuli):
         where = "paper" if protocol.medium == "paper" else "a conventional display"
         raise InputError(
             f"{protocol.name} is read on {where}, which the simulated reader cannot feel; {INSTEAD}"
         )
-    assert conditions, "a plan has trials"
-    kind = SimulatedNaming if plan.trials[0].stimuli[0].picture else Simulated
-    return kind(protocol, plan, Habits.parse(habits))
+    kind = SimulatedNaming if stimuli[0].picture else Simulated
+    return kind(protocol, plan, parse_habits(habits))
 
 
-class Simulated(InTurn):
+class Simulated(Answers):
     """A simulated reader, which is given the frames that were sent and where the array was.
 
     Like a person, it was told the task: where a string begins, how many characters it has, and by
@@ -112,16 +97,14 @@ class Simulated(InTurn):
 
     felt = True
 
-    def __init__(self, protocol: Protocol, plan: Plan, habits: Habits) -> None:
-        shares = {"lapses": habits.lapses, "false-alarms": habits.false_alarms}
-        given = [f"{name}={share:g}" for name, share in shares.items() if share]
-        self.name = ",".join([f"simulated:{habits.noise:g}", *given])
-        self._habits = habits
-        self._study = protocol
-        self._question = protocol.asks
+    def __init__(self, protocol: Protocol, plan: Plan, habits: dict[str, float]) -> None:
+        self._habits, self._noise = habits, habits["noise"]
+        given = [f"{name}={share:g}" for name, share in habits.items() if share and name != "noise"]
+        self.name = ",".join([f"simulated:{self._noise:g}", *given])
+        self._study, self._question = protocol, protocol.asks
         self._drawn = f"{protocol.name} {plan.participant} {plan.seed}"
-        self._parameter = getattr(protocol.design, "parameter", "")
-        if habits.false_alarms and not self._question.alarm:
+        self._parameter = protocol.design.parameter
+        if habits["false-alarms"] and not self._question.alarm:
             raise InputError(
                 f"{protocol.name} asks {self._question.kind}, to which no answer is a false alarm; "
                 f"leave false-alarms out"
@@ -137,31 +120,29 @@ class Simulated(InTurn):
         assert asked.trial is not None, "a trial is asked about"
         drawn = f"{self._drawn} {asked.trial.practice} {asked.trial.number} {asked.attempt}"
         habits = random_of(f"{drawn} habits")
-        lapsed = habits.random() < self._habits.lapses
-        alarmed = habits.random() < self._habits.false_alarms
+        lapsed = habits.random() < self._habits["lapses"]
+        alarmed = habits.random() < self._habits["false-alarms"]
         scale = self._question.confidence
         if asked.what == "confidence" and scale is not None:
             # After a crash between an answer and its confidence there is nothing left to think of.
-            is_sure = asked.felt() and self._answer(asked, habits) == asked.answer
+            is_sure = asked.felt() and self._answer(asked, asked.trial, habits) == asked.answer
             quarters = 0 if lapsed else 3 if is_sure else 1
             return Line(str(scale.least + round(quarters * (scale.most - scale.least) / 4)))
         if lapsed:
             return Line(self._question.guess(asked.trial, habits))
         if alarmed:
             return Line(self._question.alarm)
-        return Line(self._answer(asked, random_of(drawn)))
+        return Line(self._answer(asked, asked.trial, random_of(drawn)))
 
     def _learn(self, plan: Plan) -> None:
         """Learn what a reader is told before the session."""
         self._observers: dict[str, Observer] = {}
         self._pairs: dict[str, DotPair | None] = {}
         usual, display = self._study.display_model.style, self._study.display_model.display
-        for trial in plan.trials:
-            if trial.condition in self._observers:
-                continue
+        for trial in {trial.condition: trial for trial in plan.trials}.values():
             style = self._study.style(self._study.look(trial.condition))
             told = replace(usual, mapping=style.mapping, geometry=style.geometry)
-            self._observers[trial.condition] = Observer(display, told, noise=self._habits.noise)
+            self._observers[trial.condition] = Observer(display, told, noise=self._noise)
             self._pairs[trial.condition] = self._pair_of(trial)
 
     def _pair_of(self, trial: Trial) -> DotPair | None:
@@ -172,8 +153,7 @@ class Simulated(InTurn):
         if self._parameter not in LENGTHS:
             return None
         look = self._study.look(trial.condition)
-        nominal = structs.replace(trial.stimuli[0], look=look)
-        edges = make_shown(self._study, nominal).edges_mm
+        edges = edges_mm(self._study, structs.replace(trial.stimuli[0], look=look))
         pitch_mm = self._study.style(look).geometry.cell_pitch_mm
         for number, (one, two) in enumerate(pairwise(edges)):
             cells = int(two // pitch_mm) - int(one // pitch_mm)
@@ -181,11 +161,11 @@ class Simulated(InTurn):
                 return DotPair(len(edges), number, two - one, cells)
         return None
 
-    def _answer(self, asked: Asked, random: np.random.Generator) -> str:
-        trial, lead = asked.trial, self._study.display.lead_cells
-        assert trial is not None
+    def _answer(self, asked: Asked, trial: Trial, random: np.random.Generator) -> str:
+        """Answer by what was felt."""
         first, count = trial.stimuli[0], len(trial.stimuli)
-        start, felt = lead + len(first.before), asked.felt()
+        lead, felt = self._study.display.lead_cells, asked.felt()
+        start = lead + len(first.before)
         sensed = FeltTrial(
             self._observers[trial.condition],
             [*felt[: count - 1], felt[-1]],  # of what was turned only the newest counts
@@ -195,7 +175,7 @@ class Simulated(InTurn):
             self._pairs[trial.condition],
             len(felt) - count,
         )
-        return self._question.simulate(sensed, self._habits.noise, random)
+        return self._question.simulate(sensed, self._noise, random)
 
 
 class SimulatedNaming(Simulated):
@@ -212,24 +192,18 @@ class SimulatedNaming(Simulated):
                 f"reader cannot answer; {INSTEAD}"
             )
         self._known: dict[str, dict[str, Trial]] = {}
-        self._thought: dict[str, list[PictureFrames]] = {}
         for trial in plan.trials:
             self._known.setdefault(trial.condition, {}).setdefault(trial.item, trial)
+        self._thought: dict[str, list] = {}
 
-    def _answer(self, asked: Asked, random: np.random.Generator) -> str:
-        assert asked.trial is not None
-        condition = asked.trial.condition
-        known = self._known[condition].values()
+    def _answer(self, asked: Asked, trial: Trial, random: np.random.Generator) -> str:
+        condition, known = trial.condition, self._known[trial.condition].values()
         if condition not in self._thought:
-            self._thought[condition] = [_frames_of(self._study, t.stimuli[0]) for t in known]
+            shown = [make_shown(self._study, each.stimuli[0]) for each in known]
+            self._thought[condition] = [each.program for each in shown]
         apart = differences(asked.felt()[-1], self._thought[condition])
-        names = [self._question.right_answer(trial) for trial in known]
-        return self._question.simulate(FeltPicture(apart, names), self._habits.noise, random)
-
-
-def _frames_of(protocol: Protocol, stimulus: Stimulus) -> Callable[..., np.ndarray]:
-    program = make_shown(protocol, stimulus).program
-    return lambda *poses: program.poses(*poses)[1]
+        names = [self._question.right_answer(each) for each in known]
+        return self._question.simulate(FeltPicture(apart, names), self._noise, random)
 
 
 def random_of(text: str) -> np.random.Generator:

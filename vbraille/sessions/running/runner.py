@@ -6,33 +6,26 @@ and takes lines. A command that ends the trial raises `Again`, one that ends the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
-from functools import partial
-from typing import Any, NamedTuple, cast
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any, NamedTuple, TypeVar
 
 from vbraille.braille.spelling import ordinal, say_cells
-from vbraille.devices.events import Knob
 from vbraille.engine.host import HostDiedError
 from vbraille.errors import InputError
 from vbraille.sessions.planning.questionnaire import Item
-from vbraille.sessions.planning.questions import Spelling
-from vbraille.sessions.planning.shown import make_shown
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Record
-from vbraille.sessions.running.answers import Answers, Asked, Line, NoMoreAnswers, Press, Typed
-from vbraille.sessions.running.device import Happening, SessionDevice
-from vbraille.sessions.running.paper import Paper, Pins
+from vbraille.sessions.running.answers import Answers, Asked, Line, NoMoreAnswers, Press
+from vbraille.sessions.running.pins import Pins
+from vbraille.sessions.running.presenter import Happening, Presenter
 from vbraille.signals import Suspension
 
 POLL_S = 0.02
 MOST_DEATHS = 3  # number of deaths after which the engine is not started again
 
-Say = Callable[[str], None]
+Read = TypeVar("Read")
 
 
 class Tone(NamedTuple):
@@ -64,42 +57,7 @@ class Over(Exception):
         self.kind, self.why, self.data = kind, why, data
 
 
-class Command(NamedTuple):
-    """A command.
-
-    Parameters
-    ----------
-    does
-        Function that does it, given the runner and the text after the word.
-    help
-        What it does.
-    takes
-        Whether text may follow the word; a line with such a text is an answer otherwise.
-    """
-
-    does: Callable[[Runner, str], None]
-    help: str
-    takes: bool = False
-
-
-class Timer:
-    """Seconds since a moment of a trial, pauses left out; None before it."""
-
-    def __init__(self) -> None:
-        self.began_s: float | None = None
-
-    def start(self, at_s: float) -> None:
-        """Count from a moment on."""
-        self.began_s = at_s
-
-    def is_past(self, limit_s: float | None, now_s: float) -> bool:
-        """Tell whether a limit is over, if there is one."""
-        if limit_s is None or self.began_s is None:
-            return False
-        return now_s - self.began_s >= limit_s
-
-
-def _nothing(*_: object) -> None:
+def nothing(*_: object) -> None:
     """Do nothing."""
 
 
@@ -112,8 +70,6 @@ class Runner:
         Record that events are added to, and how far the session has come.
     answers, device, pins
         Where answers come from, what stimuli are felt on, and the conventional display beside it.
-    commands
-        What may be typed beside answers, by its word.
     real
         Whether the session runs by the clock of the machine.
     say
@@ -134,6 +90,8 @@ class Runner:
         Which of its stimuli is shown, from 0.
     is_shown, paused : bool
         Whether a stimulus is shown, and whether the session is paused.
+    asked : Asked or None
+        What a line is waited for.
     waits_for : str
         What the session waits for, in words for people.
     break_wanted, is_over : bool
@@ -146,56 +104,51 @@ class Runner:
         record: Record,
         progress: Progress,
         answers: Answers,
-        device: SessionDevice | Paper,
+        device: Presenter,
+        pins: Pins | None,
         *,
-        commands: Mapping[str, Command],
-        pins: Pins | None = None,
-        real: bool = True,
-        say: Say = _nothing,
-        play: Callable[[Tone], None] = _nothing,
-        mark: Callable[[str, float, Trial | None, int], None] = _nothing,
-        look: Callable[[Runner], None] = _nothing,
+        real: bool,
+        say: Callable[[str], None],
+        play: Callable[[Tone], None],
+        mark: Callable[[str, float, Trial | None, int], None],
+        look: Callable[[Runner], None],
     ) -> None:
-        self.progress = progress
-        self.protocol = progress.protocol
+        self.progress, self.protocol = progress, progress.protocol
         self.answers, self.device, self.pins = answers, device, pins
         self.trial: Trial | None = None
         self.attempt = self.stimulus = 0
         self.is_shown = self.paused = self.break_wanted = self.is_over = False
-        self.waits_for = ""
         self.asked: Asked | None = None
-        self.commands, self.say = commands, say
-        self._record = record
-        self._real = real
+        self.waits_for = ""
+        self.say = say
+        self._record, self._real = record, real
         self._play, self._mark, self._look = play, mark, look
         self._suspension = Suspension()
         self._key = ""  # the key that ends reading, if one does
         self._deaths = 0
+        self._began_s = self._before_s = 0.0
         self._free_s = 0.0  # since when the gap before the next trial counts
         self._paused_s = 0.0
-        self._began_s, self._before_s = device.now_s, progress.t_s
-        self._cue, self._exposed, self._answering = Timer(), Timer(), Timer()
+        # Since when the times of the open trial count, pauses left out: "cue", the time to the
+        # "warning", the "exposure", and the time for an "answer". What is over is no longer there.
+        self._since_s: dict[str, float] = {}
+        self._late = False
         self._ended_by = ""
-        self._warned = self._told_late = False
         self._doubted = ""  # answer that was typed early, and is asked for once more
-        spelled = self._spelled_commands() if answers.typed else set()
-        self._ambiguous = spelled & commands.keys()
-
-    @property
-    def now_s(self) -> float:
-        """Time of the session's clock."""
-        return self.device.now_s
+        stimuli = [s for trial in progress.plan.trials for s in trial.stimuli]
+        spelled = {say_cells(s.cells, self.protocol.masks).replace(" ", "") for s in stimuli}
+        spelled |= {stimulus.text.casefold() for stimulus in stimuli}
+        self._ambiguous = spelled & COMMANDS.keys() if answers.typed else set()
 
     @property
     def elapsed_s(self) -> float:
         """Seconds that the session has run for, without the time between runs."""
-        return self._elapsed_s(self.now_s)
+        return self._elapsed_s(self.device.now_s)
 
     @property
-    def presenter(self) -> SessionDevice | Paper:
+    def presenter(self) -> Presenter:
         """Presenter of the trial that is open or comes next."""
-        trial = self.trial
-        on_pins = trial is not None and trial.stimuli[0].on == "pins"
+        on_pins = self.trial is not None and self.trial.stimuli[0].on == "pins"
         return self.pins if self.pins is not None and on_pins else self.device
 
     @property
@@ -221,7 +174,7 @@ class Runner:
         Parameters
         ----------
         told
-            What the event of the run says, such as the device.
+            What the event of the run says, such as the conditions.
 
         Returns
         -------
@@ -237,7 +190,8 @@ class Runner:
             self.say(f"resume: {self.progress.done} trials have answers")
         with self._suspension:
             try:
-                self._go_through()
+                while self._go_through():
+                    self.withdraw()
                 over = Over("end", "all trials are done")
             except NoMoreAnswers:
                 over = Over("stop", "there are no more answers")
@@ -250,86 +204,62 @@ class Runner:
         return over
 
     def _begin(self, **told: Any) -> None:
-        """Wait for the first tick, and write that the run has begun."""
+        """Write that the run has begun, or that the engine was started again."""
         self._record.write_ticks()  # those of an engine that died: ticks of each run begin at 0
-        first: list[NDArray[np.void]] = []
-        early: list[Happening] = []
-        if isinstance(self.device, SessionDevice):
-            while self.device.newest is None:
-                ticks, happened = self.device.poll()
-                first.append(ticks)
-                early += happened
-        self._began_s, self._before_s = self.now_s, self.progress.t_s
+        self._began_s, self._before_s = self.device.now_s, self.progress.t_s
         self._free_s = -1e9
-        self.log("run", **told)
-        for ticks in filter(len, first):
-            self._record.add_ticks(ticks)
-        for happening in early:
-            self._take(happening)
+        self.log("run", **told, **self.device.told)
 
-    def _go_through(self) -> None:
-        """Do what comes next until nothing does."""
-        while True:
-            try:
-                while self._go_on():
-                    pass
-                if not self.answers.typed or self._may_end():
-                    return
-            except Again:
-                self.withdraw()
-
-    def _may_end(self) -> bool:
-        """Ask the experimenter whether the session is over."""
-        self.trial = None
-        self.say("last: all trials are done; Enter ends, undo takes back the last answer")
-        with suppress(NoMoreAnswers):
-            self.await_enter("Enter, which ends the session")
-        return True
+    def _go_through(self) -> bool:
+        """Do what comes next until nothing does; return whether there may be something again."""
+        try:
+            while self._go_on():
+                pass
+            if self.answers.typed:
+                self.trial = None
+                self.say("last: all trials are done; Enter ends, undo takes back the last answer")
+                with suppress(NoMoreAnswers):
+                    self.await_enter("Enter, which ends the session")
+        except Again:
+            return True
+        return False
 
     def finish(self, over: Over) -> None:
         """Write why the run is over, and say it."""
         self.is_over, self.waits_for = True, ""
         self.log(over.kind, why=over.why, **over.data)
-        done = f"{self.progress.done} trials have answers"
         goes_on = "; session resume goes on" if over.kind == "stop" else ""
-        self.say(f"{over.kind}: {over.why}; {done}{goes_on}")
+        self.say(f"{over.kind}: {over.why}; {self.progress.done} trials have answers{goes_on}")
         for sentence in self.progress.found if over.kind == "end" else ():
             self.say(sentence)
         self._look(self)
 
     def _go_on(self) -> bool:
         """Do what comes next; return whether there was anything."""
-        trial, asked = self.progress.next_trial, self.progress.next_item
-        if trial is not None and (trial.practice or self._is_half_done(trial)):
-            asked = None
-        if asked is not None:
+        progress = self.progress
+        trial, asked = progress.next_trial, progress.next_item
+        if trial is None:
+            waits = False
+        else:  # nothing is asked in practice, nor between a trial and its answer or confidence
+            half_done = progress.is_taken_back(trial) or progress.lacks_confidence(trial)
+            waits = trial.practice or half_done
+        if asked is not None and not waits:
             self._ask_item(*asked)
         elif trial is not None:
             self._conduct(trial)
-        return asked is not None or trial is not None
-
-    def _is_half_done(self, trial: Trial) -> bool:
-        """Tell whether a trial was shown, and only its answer or its confidence is to come."""
-        return self.progress.is_taken_back(trial) or self.progress.lacks_confidence(trial)
-
-    # The questionnaire.
+        else:
+            return False
+        return True
 
     def _ask_item(self, item: Item, number: int) -> None:
         """Ask a question of the questionnaire, and write the reply."""
         self.trial = None
         self.say(f"question: {item.ask} Type {item.typed}")
         self.waits_for = "a reply to the questionnaire"
-        asked = Asked("reply", item=item)
-        while True:
-            line = self._wait_for_line(asked)
-            try:
-                reply = item.parse(line.text)
-                break
-            except ValueError as error:
-                self._refuse(error, line)
+        line, reply = self._ask_for(Asked("reply", item=item), item.parse)
         self.log("reply", name=item.name, number=number, reply=reply, **_numbered(line))
         self.say(f"reply: {item.name} is in")
-        self._free_s = self.now_s
+        self._free_s = self.device.now_s
 
     # A trial.
 
@@ -338,13 +268,12 @@ class Runner:
         self.trial, self.attempt = trial, self.progress.attempts(trial)
         if self.progress.lacks_confidence(trial):
             self._ask_confidence(trial)
-        elif self.progress.is_taken_back(trial):
-            self._ask(trial)
-        else:
+            return
+        if not self.progress.is_taken_back(trial):
             self._prepare(trial)
             self.attempt += 1
             self._present(trial)
-            self._ask(trial)
+        self._ask(trial)
 
     def _prepare(self, trial: Trial) -> None:
         """Wait until a trial may begin."""
@@ -356,8 +285,8 @@ class Runner:
             raise Over("end", f"the limit of {limit_s:g} s is over")
         if self.break_wanted or self.progress.is_break_due(trial):
             self._have_break()
-        presenter = self.presenter
-        where = ", on the conventional display" if presenter is self.pins else ""
+        presenter, pins = self.presenter, self.pins
+        where = ", on the conventional display" if presenter is pins else ""
         enter = presenter.by_key and self.answers.typed
         how = "; press Enter when reading begins" if enter else ""
         again = ", again" if self.attempt else ""
@@ -365,17 +294,14 @@ class Runner:
         if enter:
             self.await_enter("Enter when reading begins")
         self.waits_for = presenter.why or "the device, with the array at the left"
+        needed = [presenter, pins] if pins and self.protocol.pins.reference else [presenter]
         due_s = self._free_s + trial.gap_s
-        while self.paused or not presenter.ready or self.now_s < due_s or not self._is_pins_ready():
+        while self.paused or self.device.now_s < due_s or not all(each.ready for each in needed):
             self._wait_for_no_line()
-
-    def _is_pins_ready(self) -> bool:
-        """Tell whether the conventional display can show what stimuli are compared with."""
-        return self.pins is None or not self.protocol.pins.reference or self.pins.ready
 
     def _present(self, trial: Trial) -> None:
         """Show the stimuli of a trial, up to the last one."""
-        self._warned = self._told_late = False
+        self._late = False
         self._ended_by = self._doubted = ""
         for number in range(len(trial.stimuli)):
             self.stimulus = number
@@ -391,55 +317,56 @@ class Runner:
         turned
             Whether it is the stimulus that is shown already, at another value.
         """
-        stimulus, presenter = trial.stimuli[self.stimulus], self.presenter
+        stimulus, presenter, procedure = (
+            trial.stimuli[self.stimulus],
+            self.presenter,
+            self.protocol.procedure,
+        )
+        is_first = not self.stimulus and not turned
         shown: dict[str, Any] = {"stimulus": self.stimulus}
         if stimulus.value is not None:
             shown["value"] = stimulus.value
-        elif (procedure := self.protocol.procedure) is not None and procedure.parameter:
+        elif procedure is not None and procedure.parameter:
             shown["value"] = getattr(stimulus.look, procedure.parameter)
-        if isinstance(presenter, SessionDevice):
-            shown["line"] = presenter.line + 1
-            show = partial(presenter.show, make_shown(self.protocol, stimulus))
-        else:
-            show = partial(presenter.show, stimulus)
+        shown |= presenter.prepare(stimulus)
         if turned:
             shown["turned"] = True
-        is_first = not self.stimulus and presenter is not self.pins
-        if self.pins is not None and self.protocol.pins.reference and is_first:
+        if is_first and self.pins and self.pins is not presenter and self.protocol.pins.reference:
             self.pins.show_reference()
-        now_s = self.now_s
+        now_s = self.device.now_s
         if not turned:
             self._play(Tone(*self.protocol.sound.cue))
-            self._start_timers(now_s)
+            self._start_times(now_s)
         self.is_shown = True
         self.log("cue", now_s, **shown)
-        show(first=not self.stimulus and not turned, turned=turned)
+        presenter.show(first=is_first, turned=turned)
         if not turned:
             which = f", {ordinal(self.stimulus)}" if self.stimulus else ""
             self.say(f"cue: {self.name}{which}")
 
-    def _start_timers(self, now_s: float) -> None:
-        self._cue, self._exposed, self._answering = Timer(), Timer(), Timer()
-        self._cue.start(now_s)
-        if self.protocol.trial.exposure_from == "cue":
-            self._exposed.start(now_s)
-        if self.protocol.trial.exposure_s is None and not self.more_to_come:
-            self._answering.start(now_s)
+    def _start_times(self, now_s: float) -> None:
+        """Have the times of a trial count from a cue."""
+        pace = self.protocol.trial
+        self._since_s = {"cue": now_s, "warning": now_s}
+        if pace.exposure_from == "cue":
+            self._since_s["exposure"] = now_s
+        if pace.exposure_s is None and not self.more_to_come:
+            self._since_s["answer"] = now_s
 
     def _ask(self, trial: Trial) -> None:
         """Wait for the answer of a trial, and write it."""
-        question, names = self.protocol.asks, ()
+        question, typed, names = self.protocol.asks, self.answers.typed, ""
         if not self.is_shown:
             self.say(f"undo: {self.name}; type its answer: {question.typed}")
         while True:
-            line = self._wait_for_line(self._asked("answer"))
+            line = self._wait_for_line(self._of_trial("answer"))
             if self.is_shown and (steps := question.steps(line.text)) is not None:
                 trial = self._turn(trial, steps)
                 continue
             try:
-                if question.confirms and self.answers.typed:
+                if question.confirm and typed:
                     names, line = self._confirm(names, line)
-                if not line.text and self.answers.typed:
+                if typed and not line.text:
                     continue
                 answer, sure = self._parse(trial, line.text)
             except ValueError as error:
@@ -449,7 +376,7 @@ class Runner:
                 break
         self._take_answer(trial, answer, sure, line)
 
-    def _confirm(self, before: tuple[str, ...], line: Line) -> tuple[tuple[str, ...], Line]:
+    def _confirm(self, before: str, line: Line) -> tuple[str, Line]:
         """Say names back until Enter takes them; the line is empty as long as nothing is taken.
 
         Parameters
@@ -458,22 +385,22 @@ class Runner:
             Names that were said back already.
         """
         question = self.protocol.asks
-        names = question.marked(line.text, before) if line.text else before
-        missing = question.missing(names) if names else ""
-        if names and names == before and not missing:
-            return names, Line(" ".join(names))
-        if names:
+        names = question.marked(f"{before} {line.text}")
+        chosen, missing = " ".join(filter(None, names)), question.missing(names)
+        if chosen and chosen == before and not missing:
+            return chosen, Line(chosen)
+        if chosen:
             how = f"one of {missing} is missing" if missing else "Enter takes it"
-            self.say(f"chosen: {' '.join(filter(None, names))}; {how}")
-        return names, Line("")
+            self.say(f"chosen: {chosen}; {how}")
+        return chosen, Line("")
 
     def _parse(self, trial: Trial, text: str) -> tuple[str, int | None]:
         """Read an answer, and how sure it is if that stands after a semicolon."""
-        scale, spelling = self.protocol.asks.confidence, self._spelling(trial)
+        asks, spelling = self.protocol.asks, self.protocol.spelling(trial.stimuli[0])
         before, semicolon, after = text.rpartition(";")
-        if scale is None or not semicolon:
-            return self.protocol.asks.parse(text, trial, spelling), None
-        return self.protocol.asks.parse(before.strip(), trial, spelling), scale.parse(after)
+        if asks.confidence is None or not semicolon:
+            return asks.parse(text, trial, spelling), None
+        return asks.parse(before.strip(), trial, spelling), asks.confidence.parse(after)
 
     def _is_doubted(self, answer: str) -> bool:
         """Ask once about an answer that was typed before the stimulus was read."""
@@ -486,23 +413,26 @@ class Runner:
 
     def _take_answer(self, trial: Trial, answer: str, sure: int | None, line: Line) -> None:
         """Write an answer, say that it is in, and ask how sure it is."""
+        asks, pace, spelling = (
+            self.protocol.asks,
+            self.protocol.trial,
+            self.protocol.spelling(trial.stimuli[0]),
+        )
         told: dict[str, Any] = {"answer": answer, "typed": line.text, **_numbered(line)}
         if self.is_shown:
-            if not self.presenter.reached:
-                told["early"] = True
-            if self._answering.is_past(self.protocol.trial.answer_s, self.now_s):
-                told["late"] = True
-            if self.protocol.trial.end or self.protocol.trial.exposure_s:
+            told |= {} if self.presenter.reached else {"early": True}
+            told |= {"late": True} if self._late else {}
+            if pace.end or pace.exposure_s:
                 told["ended_by"] = self._ended_by or "answer"
         self.withdraw()
         self.log("answer", **told)
-        self.say(f"answer: {self.name}, {self._said(trial, answer)}")
-        if trial.practice or self.protocol.trial.feedback:
-            self._tell_outcome(trial, answer)
-        self._free_s = self.now_s
+        self.say(f"answer: {self.name}, {asks.said(answer, spelling)}")
+        outcome, was = asks.outcome(trial, answer), asks.was(trial, spelling)
+        if outcome and (trial.practice or pace.feedback):
+            self.say(f"feedback: {outcome}{f', it was {was}' if was else ''}")
+        self._free_s = self.device.now_s
         if sure is not None:
-            self.log("confidence", confidence=sure, **_numbered(line))
-            self.say(f"rated: {self.name}, confidence {sure}")
+            self._rate(sure, line)
         elif self.progress.lacks_confidence(trial):
             self._ask_confidence(trial)
 
@@ -513,19 +443,16 @@ class Runner:
         if self.answers.typed:
             self.say(f"confidence: {self.name}; type {scale.least} to {scale.most}")
         answer = self.progress.answers[trial.key].data["answer"]
-        asked = self._asked("confidence")._replace(answer=answer)
-        while True:
-            line = self._wait_for_line(asked)
-            try:
-                sure = scale.parse(line.text)
-                break
-            except ValueError as error:
-                self._refuse(error, line)
+        asked = self._of_trial("confidence")._replace(answer=answer)
+        line, sure = self._ask_for(asked, scale.parse)
+        self._rate(sure, line)
+        self._free_s = self.device.now_s
+
+    def _rate(self, sure: int, line: Line) -> None:
         self.log("confidence", confidence=sure, **_numbered(line))
         self.say(f"rated: {self.name}, confidence {sure}")
-        self._free_s = self.now_s
 
-    def _asked(self, what: Any) -> Asked:
+    def _of_trial(self, what: Any) -> Asked:
         self.waits_for = "the answer" if what == "answer" else "how sure the answer is"
         return Asked(what, self.trial, self.attempt, self.presenter.explorations)
 
@@ -544,27 +471,21 @@ class Runner:
         self.say(f"turned: {self.name}")
         return trial
 
+    def _ask_for(self, asked: Asked, parse: Callable[[str], Read]) -> tuple[Line, Read]:
+        """Wait for a line that can be read."""
+        while True:
+            line = self._wait_for_line(asked)
+            try:
+                return line, parse(line.text)
+            except ValueError as error:
+                self._refuse(error, line)
+
     def _refuse(self, error: ValueError, line: Line) -> None:
         """Say why a line is no answer; a line of a file or a program cannot be typed again."""
         if not self.answers.typed:
             where = f" line {line.number}" if line.number else ""
             raise InputError(f"{self.answers.name}{where}: {error}") from None
         self.say(f"no answer: {error}")
-
-    def _tell_outcome(self, trial: Trial, answer: str) -> None:
-        """Say whether an answer is right, and what would have been."""
-        asks = self.protocol.asks
-        outcome, was = asks.outcome(trial, answer), asks.was(trial, self._spelling(trial))
-        if outcome:
-            self.say(f"feedback: {outcome}{f', it was {was}' if was else ''}")
-
-    def _said(self, trial: Trial, answer: str) -> str:
-        return self.protocol.asks.said(answer, self._spelling(trial))
-
-    def _spelling(self, trial: Trial) -> Spelling:
-        return self.protocol.spelling(trial.stimuli[0])
-
-    # Breaks.
 
     def _have_break(self) -> None:
         """Have a break until Enter is typed."""
@@ -579,29 +500,28 @@ class Runner:
         self.log("go")
         self.trial = trial
 
+    # Waiting.
+
     def await_enter(self, waits_for: str, planned_s: float | None = None) -> None:
         """Wait until Enter is typed, and say when the planned time is over."""
         self.waits_for = waits_for
-        timer = Timer()
-        timer.start(self.now_s)
+        began_s = self.device.now_s
         while True:
             found = self.wait(Asked("go"))
-            if isinstance(found, Line) and not found.text.strip():
+            if found is not None and not found.text.strip():
                 return
             if found is not None:
                 self.say("no answer is waited for now; Enter goes on")
-            if timer.is_past(planned_s, self.now_s):
+            if planned_s is not None and self.device.now_s - began_s >= planned_s:
                 planned_s = None
                 self.say("break: its time is over; Enter goes on")
 
-    # Waiting.
-
     def _wait_for_line(self, asked: Asked) -> Line:
         """Wait for a line that is no command."""
-        while True:
+        found = None
+        while found is None:
             found = self.wait(asked)
-            if found is not None:
-                return found
+        return found
 
     def _wait_for_no_line(self) -> None:
         """Wait a little, where no answer can be given yet."""
@@ -626,11 +546,9 @@ class Runner:
         self.asked = asked
         if self._suspension.asked:
             self._suspend()
-        if isinstance(self.answers, Typed):
-            self.answers.awaits_key = self.reading
-        presenter = self.presenter
-        if isinstance(presenter, Paper) and self.is_shown and not self.answers.typed:
-            presenter.press()  # answers that are not typed take no time to read paper
+        self.answers.awaits_key = self.reading
+        if self.is_shown and not self.answers.typed:
+            self.presenter.press()  # answers that are not typed take no time to read paper
         # A file or a program is asked when the stimulus is read; a person may type at any time.
         is_due = not self.paused and (not self.is_shown or self.presenter.read)
         found = self.answers.line(asked if is_due else None, self._wait_s())
@@ -639,66 +557,57 @@ class Runner:
         self._look(self)
         if isinstance(found, Press):
             self.end_reading(self._key)
-            return None
-        if found is None:
-            return self._controlled() if asked is not None and asked.what == "answer" else None
-        return self._obey(found, asked)
+        elif found is not None:
+            return self._obey(found, asked)
+        elif asked is not None and asked.what == "answer":
+            return self._controlled()
+        return None
 
     def _obey(self, line: Line, asked: Asked | None) -> Line | None:
         """Do what a line says if it is a command, or Enter; else return it."""
         text = line.text.strip()
         if not text:
             return self._enter(line)
-        found = self._find_command(text)
-        if found is None:
+        word, _, rest = text.partition(" ")
+        word, rest = word.lower(), rest.strip()
+        command = COMMANDS.get(word)
+        if command is None or (rest and not command.takes):
             return line._replace(text=text)
-        word, rest = found
-        awaited = asked is not None and asked.what == "answer"
-        if word == "answer" or (awaited and not self.answers.typed and word in self._ambiguous):
+        if word == "answer":
             return line._replace(text=rest)
-        if awaited and word in self._ambiguous and text.lower() == word:
+        if word == "command":
+            command, rest = COMMANDS.get(rest.lower(), COMMANDS["help"]), ""
+        elif not rest and word in self._ambiguous and asked and asked.what == "answer":
             said = f"type answer {text}, or command {word}"
             self.say(f"{text} is a command, and a string here: {said}")
             return None
-        if word == "command":
-            word, rest = rest.lower(), ""
-        self.commands[word].does(self, rest)
+        command.does(self, rest)
         return None
-
-    def _find_command(self, line: str) -> tuple[str, str] | None:
-        """Return the command of a line and the text after it; None if the line is no command."""
-        word, _, rest = line.partition(" ")
-        command = self.commands.get(word.lower())
-        if command is None or (rest.strip() and not command.takes):
-            return None
-        return word.lower(), rest.strip()
 
     def _enter(self, line: Line) -> Line | None:
         """Do what Enter does now; return it if something waits for it."""
+        presenter = self.presenter
         if self.device.confirm():
             return None
         if self.paused:
             self.go()
-            return None
-        presenter = self.presenter
-        if self.is_shown and presenter.by_key and not presenter.read:
-            assert isinstance(presenter, Paper)
+        elif self.is_shown and presenter.by_key and not presenter.read:
             if why := presenter.press():
                 self.say(f"too early: {why}")
-            return None
-        if self.reading and self._key == "key:enter":
+        elif self.reading and self._key == "key:enter":
             self.end_reading(self._key)
-            return None
-        return line
+        else:
+            return line
+        return None
 
     def _wait_s(self) -> float:
         """Return how long may be waited for a line."""
         if not self._real:
             return 0.0
-        exposure_s, began_s = self.protocol.trial.exposure_s, self._exposed.began_s
-        if exposure_s is None or began_s is None or self.paused or not self.is_shown:
+        exposure_s, since_s = self.protocol.trial.exposure_s, self._since_s.get("exposure")
+        if exposure_s is None or since_s is None or self.paused or not self.is_shown:
             return POLL_S
-        return min(max(began_s + exposure_s - self.now_s, 0.0), POLL_S)
+        return min(max(since_s + exposure_s - self.device.now_s, 0.0), POLL_S)
 
     def _poll(self) -> None:
         """Take what the device and the conventional display tell."""
@@ -727,7 +636,7 @@ class Runner:
         if said:
             self.say(said)
         if kind == "contact" and self.protocol.trial.exposure_from == "contact":
-            self._exposed.start(at_s)
+            self._since_s["exposure"] = at_s
         if kind == "read" and self.answers.typed and not self.more_to_come:
             self.say(f"read: type the answer: {self.protocol.asks.typed}")
         if kind == "fault":
@@ -747,71 +656,66 @@ class Runner:
         self.say(f"fault: {fault}; it is started again")
         self.device.start()
         trial, self.trial = self.trial, None
-        self._begin(why="fault")
+        self._begin(why="fault", answers=self.answers.name)
         self.trial = trial
         if was_shown:
             raise Again
 
     def _controlled(self) -> Line | None:
         """Return the line that a button or a knob of the device stands for, if one does."""
-        question, trial = self.protocol.asks, self.trial
         for control in self.device.take_controls():
-            if trial is None or self.paused or not self.is_shown:
+            if self.trial is None or self.paused or not self.is_shown:
                 continue
-            if not isinstance(control, Knob):
-                if line := question.by_button(control.number):
-                    return Line(line)
-                continue
-            value = question.by_knob(control.number, control.value)
-            if value is not None:
-                steps = round((value - trial.stimuli[-1].value) / question.step)
-                return Line(("+" if steps > 0 else "-") * abs(steps)) if steps else None
+            if line := self.protocol.asks.controlled(control, self.trial):
+                return Line(line)
         return None
 
     def _watch_time(self) -> None:
         """Do what is due by the time since the cue."""
         if not self.is_shown or self.paused:
             return
-        pace, now_s = self.protocol.trial, self.now_s
-        if self._exposed.is_past(pace.exposure_s, now_s):
+        pace = self.protocol.trial
+        if self._is_past("exposure", pace.exposure_s):
             self.end_reading("exposure")
-        if not self._warned and self._cue.is_past(pace.warning_s, now_s):
-            self._warned = True
+        if self._is_past("warning", pace.warning_s):
             self._play(Tone(*self.protocol.sound.warning))
             self.log("warning")
             self.say(f"warning: {self.name}, {pace.warning_s:g} s")
-        if not self._told_late and self._answering.is_past(pace.answer_s, now_s):
-            self._told_late = True
+        if self._is_past("answer", pace.answer_s):
             if pace.late == "missed":
                 self.withdraw()
                 self.log("missed")
                 self.say(f"missed: {self.name}, no answer in {pace.answer_s:g} s")
-                self._free_s = now_s
+                self._free_s = self.device.now_s
                 raise Again
+            self._late = True
             self.say(f"late: {self.name}, after {pace.answer_s:g} s")
+
+    def _is_past(self, what: str, limit_s: float | None) -> bool:
+        """Tell, once, whether a time of the open trial is over."""
+        since_s = self._since_s.get(what)
+        if limit_s is None or since_s is None or self.device.now_s - since_s < limit_s:
+            return False
+        del self._since_s[what]
+        return True
 
     def end_reading(self, by: str, at_s: float | None = None) -> None:
         """End reading of the stimulus that is shown, by the participant's key or by the time."""
         if not self.reading:
             return
-        at_s = self.now_s if at_s is None else at_s
+        at_s = self.device.now_s if at_s is None else at_s
         self.presenter.end_reading()
         self.log("ended", at_s, by=by)
-        self._exposed = Timer()
+        self._since_s.pop("exposure", None)
+        said = by.replace(":", " ")
         if self.more_to_come:
-            self.say(f"ended: the {ordinal(self.stimulus)}, by {by.replace(':', ' ')}")
+            self.say(f"ended: the {ordinal(self.stimulus)}, by {said}")
             return
         self._ended_by = by
         if self.protocol.trial.exposure_s is not None:
-            self._answering.start(at_s)
-        read_s = at_s - (self._cue.began_s or at_s)
+            self._since_s["answer"] = at_s
         typed = f"; type the answer: {self.protocol.asks.typed}" if self.answers.typed else ""
-        self.say(f"ended: {read_s:.2f} s, by {by.replace(':', ' ')}{typed}")
-
-    @property
-    def _typist(self) -> Typed:
-        """Answers of a person, where they are typed."""
-        return cast("Typed", self.answers)
+        self.say(f"ended: {at_s - self._since_s['cue']:.2f} s, by {said}{typed}")
 
     def _watch_key(self) -> None:
         """Look out for the participant's key, or say that Enter is pressed instead."""
@@ -819,42 +723,41 @@ class Runner:
         if not key or self._key == "key:enter" or not self.answers.typed:
             return
         name = self._key.removeprefix("key:")
-        if self._typist.watch(key):
+        if self.answers.watch(key):
             self.say(f"key: {name} ends reading, with no Enter after it")
         else:
             self._key = "key:enter"
-            self.say(f"key: standard input is no terminal; Enter ends reading instead of {name}")
+            self.say(f"key: lines are typed whole here; Enter ends reading instead of {name}")
 
     def _suspend(self) -> None:
         """Pause, and stop the process; afterwards Enter ends the pause."""
         was_paused = self.paused
         self.pause()
-        if self.answers.typed:
-            self._typist.release()
+        self.answers.release()
         self._suspension.stop()
-        if self.answers.typed:
-            self._typist.take()
-        elif not was_paused:
+        self.answers.take()
+        if not was_paused and not self.answers.typed:
             self.go()
 
     def pause(self) -> None:
         """Bring the array to rest."""
         if self.paused:
             return
-        self.paused, self._paused_s = True, self.now_s
+        self.paused, self._paused_s = True, self.device.now_s
+        self._rest()
+        self.log("pause")
+        self.say("pause: the array is at rest; Enter goes on")
+
+    def _rest(self) -> None:
         self.device.rest()
         if self.pins is not None:
             self.pins.rest()
-        self.log("pause")
-        self.say("pause: the array is at rest; Enter goes on")
 
     def go(self) -> None:
         """Go on after a pause."""
         self.paused = False
-        away_s = self.now_s - self._paused_s
-        for timer in (self._cue, self._exposed, self._answering):
-            if timer.began_s is not None:
-                timer.began_s += away_s
+        away_s = self.device.now_s - self._paused_s
+        self._since_s = {what: since_s + away_s for what, since_s in self._since_s.items()}
         if self.is_shown:
             self.presenter.go()
         self.log("go")
@@ -869,7 +772,7 @@ class Runner:
 
     def log(self, kind: str, at_s: float | None = None, **data: Any) -> None:
         """Write an event, of the open trial if there is one; it is on the disk then."""
-        at_s = self.now_s if at_s is None else at_s
+        at_s = self.device.now_s if at_s is None else at_s
         self._mark(kind, at_s, self.trial, data.get("stimulus", 0))
         t_s = self._elapsed_s(at_s)
         self.progress.take(self._record.append(kind, t_s, self.trial, self.attempt, **data))
@@ -877,12 +780,133 @@ class Runner:
     def _elapsed_s(self, at_s: float) -> float:
         return self._before_s + at_s - self._began_s
 
-    def _spelled_commands(self) -> set[str]:
-        """Return how the strings of the plan are spelled, to tell them from commands."""
-        stimuli = [s for trial in self.progress.plan.trials for s in trial.stimuli]
-        cells = {say_cells(s.cells, self.protocol.masks).replace(" ", "") for s in stimuli}
-        return cells | {stimulus.text.casefold() for stimulus in stimuli}
-
 
 def _numbered(line: Line) -> dict[str, int]:
     return {"script_line": line.number} if line.number else {}
+
+
+# Commands, which may be typed beside answers.
+
+
+class Command(NamedTuple):
+    """A command.
+
+    Parameters
+    ----------
+    does
+        Function that does it, given the runner and the text after the word.
+    help
+        What it does.
+    takes
+        Whether text may follow the word; a line with such a text is an answer otherwise.
+    """
+
+    does: Callable[[Runner, str], None]
+    help: str
+    takes: bool = False
+
+
+def _undo(runner: Runner, _: str) -> None:
+    newest = runner.progress.newest_given
+    if newest is None:
+        runner.say("undo: there is no answer to take back")
+        return
+    if newest.kind == "reply":
+        runner.trial = None
+        runner.log("undo", name=newest.data["name"], number=newest.data["number"])
+        raise Again
+    runner.withdraw()
+    trial = next(each for each in runner.progress.plan.trials if each.key == newest.key)
+    runner.trial, runner.attempt = trial, runner.progress.attempts(trial)
+    runner.log("undo")
+    raise Again
+
+
+def _repeat(runner: Runner, _: str) -> None:
+    if not runner.is_shown:
+        runner.say("repeat: no trial is open")
+        return
+    runner.log("repeat")
+    raise Again
+
+
+def _note(runner: Runner, text: str) -> None:
+    if not text:
+        runner.say("note: type the note after the word")
+        return
+    runner.log("note", text=text)
+    runner.say("note: is in")
+
+
+def _pause(runner: Runner, _: str) -> None:
+    if runner.paused:
+        runner.go()
+    else:
+        runner.pause()
+
+
+def _go(runner: Runner, _: str) -> None:
+    if runner.paused:
+        runner.go()
+    else:
+        runner.say("go: nothing is paused; if it is the answer, type answer go")
+
+
+def _break(runner: Runner, _: str) -> None:
+    runner.break_wanted = True
+    if runner.trial is None or runner.is_shown or runner.progress.lacks_confidence(runner.trial):
+        runner.say("break: after this trial")
+    else:
+        raise Again
+
+
+def _begin(runner: Runner, _: str) -> None:
+    if runner.progress.practice_is_over:
+        runner.say("begin: practice is over already")
+        return
+    runner.withdraw()
+    runner.trial = None
+    runner.log("begin")
+    raise Again
+
+
+def _stop(_runner: Runner, _: str) -> None:
+    raise Over("stop", "stopped by the experimenter")
+
+
+def _quit(runner: Runner, reason: str) -> None:
+    if not reason:
+        runner.say("quit: type the reason after the word; stop ends for now alone")
+        return
+    raise Over("end", "the participant stopped", reason=reason)
+
+
+def _help(runner: Runner, _: str) -> None:
+    asks, asked = runner.protocol.asks, runner.asked
+    if asked is not None and asked.item is not None:
+        runner.say(f"question: {asked.item.ask} Type {asked.item.typed}")
+    elif asks.ask:
+        runner.say(f"question: {asks.ask}")
+    runner.say(f"an answer: {asks.typed}")
+    if asks.confidence is not None:
+        least, most = asks.confidence.least, asks.confidence.most
+        runner.say(f"confidence: {least} to {most}, after the answer or after a semicolon")
+    runner.say("Enter: go on after a pause or a break")
+    for word, command in COMMANDS.items():
+        runner.say(f"{word}: {command.help}")
+
+
+COMMANDS: dict[str, Command] = {
+    "answer": Command(nothing, "before an answer that is also a command", takes=True),
+    "command": Command(nothing, "before a command that is also a string", takes=True),
+    "undo": Command(_undo, "take back the last answer, and type it again"),
+    "repeat": Command(_repeat, "show the open trial again, from its start"),
+    "note": Command(_note, "write the rest of the line into the record", takes=True),
+    "pause": Command(_pause, "bring the array to rest; Enter goes on"),
+    "go": Command(_go, "go on after a pause"),
+    "break": Command(_break, "have a break after the open trial"),
+    "begin": Command(_begin, "end practice"),
+    "stop": Command(_stop, "stop for now; session resume goes on"),
+    "quit": Command(_quit, "end for good; the participant's reason after it", takes=True),
+    "help": Command(_help, "list what may be typed"),
+}

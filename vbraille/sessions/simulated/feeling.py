@@ -122,8 +122,7 @@ class FeltTrial:
 
     def strength(self, stimulus: int = 0) -> float:
         """Strength of the strongest dot asked for, in units of E₀; 0 if the hand was on none."""
-        touch = self.observer.felt(self.felt[stimulus], self.places[stimulus])
-        evidence = touch.evidence[self.asked]
+        evidence = self.observer.felt(self.felt[stimulus], self.places[stimulus])[self.asked]
         return 0.0 if np.isnan(evidence).all() else float(np.nanmax(evidence))
 
     def values(self) -> tuple[list[float], float]:

@@ -15,16 +15,13 @@ anybody, and it claims nothing about people; it is for trying protocols out.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vbraille.sessions.simulated.skin import FeltFrames
-
-# Frames, float[n, rows, columns], of a picture at x, y (mm), θ (rad) and times (s), float64[n].
-PictureFrames = Callable[..., NDArray[np.floating]]
 
 MOMENTS = 48
 _WINDOW_S = 0.02
@@ -43,32 +40,22 @@ def moments(felt: FeltFrames) -> NDArray[np.intp]:
     return known[at]
 
 
+def differences(felt: FeltFrames, known: Sequence[Any]) -> NDArray[np.float64]:
+    """Return how much each of some programs differs from what was felt; float64[pictures]."""
+    at = moments(felt)
+    if not at.size:
+        return np.zeros(len(known))
+    places = (felt.x_mm, felt.y_mm, felt.theta_rad, felt.time_s)
+    poses = [np.zeros(at.size) if each is None else each[at.ravel()] for each in places]
+    frames = felt.frames[at]
+    given = _impression(frames)
+    thought = [_impression(program.poses(*poses)[1].reshape(frames.shape)) for program in known]
+    return np.array([np.sqrt(np.mean((each - given) ** 2)) for each in thought])
+
+
 def _impression(frames: NDArray[np.floating]) -> NDArray[np.float64]:
     """Means and standard deviations, float64[2, m, ...], of frames [m, samples, ...]."""
     return np.stack([frames.mean(axis=1), frames.std(axis=1)])
-
-
-def differences(felt: FeltFrames, known: Sequence[PictureFrames]) -> NDArray[np.float64]:
-    """Differences between what was felt and what each picture would give; float64[pictures]."""
-    at = moments(felt)
-    ticks = at.ravel()
-    places = (felt.x_mm, felt.y_mm, felt.theta_rad, felt.time_s)
-    poses = [np.zeros(ticks.size) if each is None else each[ticks] for each in places]
-    impression = _impression(felt.frames[at])
-    found = []
-    for frames_of in known:
-        thought = _impression(frames_of(*poses).reshape(*at.shape, *felt.frames.shape[1:]))
-        found.append(np.sqrt(np.mean((thought - impression) ** 2)) if at.size else 0.0)
-    return np.array(found)
-
-
-def name_one(apart: NDArray[np.float64], noise: float, random: np.random.Generator) -> int:
-    """Number of the picture that differs least from what was felt, with noise."""
-    unit = float(apart.mean())
-    drawn = random.standard_normal(apart.size)
-    if unit == 0 or np.ptp(apart) == 0:
-        return int(drawn.argmin())
-    return int((apart / unit + noise * drawn).argmin())
 
 
 class FeltPicture(NamedTuple):
@@ -86,5 +73,8 @@ class FeltPicture(NamedTuple):
     names: Sequence[str]
 
     def named(self, noise: float, random: np.random.Generator) -> str:
-        """Return the name of the picture that is felt most like it."""
-        return self.names[name_one(self.apart, noise, random)]
+        """Return the name of the picture that differs least from what was felt, with noise."""
+        drawn = random.standard_normal(self.apart.size)
+        if np.ptp(self.apart) > 0:
+            drawn = self.apart / self.apart.mean() + noise * drawn
+        return self.names[int(drawn.argmin())]

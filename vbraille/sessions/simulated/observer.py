@@ -48,7 +48,6 @@ chosen.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -76,36 +75,6 @@ APART = 0.1  # gap that parts two dots, in units of the nominal dot width
 TIE = 0.04  # difference that counts as equal without noise, in units of the nominal length
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Touch:
-    """Evidence of each dot of a line, as it was felt.
-
-    Parameters
-    ----------
-    evidence : float64[places, 8]
-        E / E₀ by cell and dot; NaN where the hand was not, and for dots that the mapping does not
-        show.
-
-    Raises
-    ------
-    ValueError
-        If the array has another shape, or a value is negative.
-    """
-
-    evidence: NDArray[np.float64]
-
-    def __post_init__(self) -> None:
-        if self.evidence.ndim != 2 or self.evidence.shape[1] != 8:
-            raise ValueError(f"evidence has shape {self.evidence.shape}; it must be [places, 8]")
-        if (self.evidence < 0).any():
-            raise ValueError(f"evidence is {np.nanmin(self.evidence):g}; it must be 0 or more")
-
-    @property
-    def nothing(self) -> bool:
-        """True if no dot at all was felt."""
-        return not (self.evidence > LEAST_FELT).any()
-
-
 class Observer:
     """A simulated reader by the model of this module; it never changes once it is made.
 
@@ -116,31 +85,10 @@ class Observer:
     noise
         Standard deviation of the noise, 0 or more: in units of E₀ for evidence, and in units of
         the nominal length for lengths.
-
-    Raises
-    ------
-    ValueError
-        If the array has a single column or too few rows, the mapping shows
-        nothing, or noise is out of range.
     """
 
-    __slots__ = (
-        "_channels",
-        "_half_mm",
-        "_pairs",
-        "_steps",
-        "_swings",
-        "array",
-        "geometry",
-        "noise",
-    )
-
     def __init__(self, array: Display, style: BrailleStyle, *, noise: float = 0.0) -> None:
-        if array.columns < 2:
-            raise ValueError("the array has 1 column; it must have 2 or more")
         mapping, own = style.mapping, style.rows_on(array)
-        if not 0 <= noise < math.inf:
-            raise ValueError(f"noise is {noise:g}; it must be a number, 0 or more")
         self.array = array
         self.geometry = style.geometry
         self.noise = noise
@@ -153,8 +101,6 @@ class Observer:
             if dot_row in tables[side]:
                 rows[dot] = tuple(r for r, shown in enumerate(tables[side]) if shown == dot_row)
         kinds = sorted({*rows.values()})
-        if not rows:
-            raise ValueError(f"mapping {mapping.name} shows no dot; it must show one or more")
         self._channels = {dot: kinds.index(kind) for dot, kind in rows.items()}
         # A frame times these weights gives strains of pairs, or swings of columns, in each channel.
         signs = 1 - 2 * mapping.idle()
@@ -165,7 +111,7 @@ class Observer:
         self._pairs = _per_frame(weights, differences)
         self._swings = _per_frame(weights, np.eye(array.columns))
 
-    def felt(self, exploration: FeltFrames, places: int) -> Touch:
+    def felt(self, exploration: FeltFrames, places: int) -> NDArray[np.float64]:
         """Evidence that an exploration gives of the dots of the first cells of a line.
 
         Parameters
@@ -175,16 +121,17 @@ class Observer:
         places
             Number of cells; the left edge of the first is at x = 0.
 
-        Raises
-        ------
-        ValueError
-            If the frames have not the shape of the array.
+        Returns
+        -------
+        float64[places, 8]
+            E / E₀ by cell and dot; NaN where the hand was not, and for dots that the mapping does
+            not show.
         """
         geometry, pitch_mm = self.geometry, self.array.column_pitch_mm
         evidence = np.full((places, 8), np.nan)
         near = self._near(exploration, geometry.extent_mm(places))
         if not near.x_mm.size:
-            return Touch(evidence)
+            return evidence
         strain = self._felt(near, self._pairs)
         # Distance of the outermost pair from the centre.
         reach_mm = self._half_mm - 0.5 * pitch_mm
@@ -204,20 +151,20 @@ class Observer:
                 for dot, channel in self._channels.items():
                     if PLACES[dot][0] == side:
                         evidence[place, dot - 1] = rms[channel]
-        return Touch(evidence / reference_per_mm2(geometry.dot_width_mm, pitch_mm))
+        return evidence / reference_per_mm2(geometry.dot_width_mm, pitch_mm)
 
-    def answer(self, touch: Touch, random: np.random.Generator) -> list[int | None]:
+    def answer(
+        self, evidence: NDArray[np.float64], random: np.random.Generator
+    ) -> list[int | None]:
         """Dot masks of the cells felt; None for a cell without the hand, or if nothing was felt."""
-        noisy = touch.evidence + self.noise * random.standard_normal(touch.evidence.shape)
-        if touch.nothing:
+        noisy = evidence + self.noise * random.standard_normal(evidence.shape)
+        if not (evidence > LEAST_FELT).any():
             return [None] * len(noisy)
         strong = noisy[noisy > np.nanmax(noisy) / 2]
         criterion = strong.mean() / 2 if strong.size else math.inf
         masks = (noisy > criterion) @ [mask_of([dot]) for dot in PLACES]
-        return [
-            None if np.isnan(row).all() else int(mask)
-            for mask, row in zip(masks, noisy, strict=True)
-        ]
+        known = ~np.isnan(noisy).all(axis=1)
+        return [int(mask) if felt else None for mask, felt in zip(masks, known, strict=True)]
 
     def read(
         self, exploration: FeltFrames, places: int, random: np.random.Generator
@@ -262,20 +209,8 @@ class Observer:
         return width_mm, float(dots_mm[1, 0] - dots_mm[0, 1]) if len(dots_mm) > 1 else math.nan
 
     def _near(self, exploration: FeltFrames, right_mm: float) -> FeltFrames:
-        """Ticks at which the array is over a line, or at most a dot's width beside it.
-
-        Raises
-        ------
-        ValueError
-            If the frames have not the shape of the array.
-        """
-        if exploration.frames.shape[1:] != self.array.shape:
-            raise ValueError(
-                f"the frames have shape {exploration.frames.shape[1:]}; "
-                f"it must be {self.array.shape}"
-            )
-        aside_mm = self.geometry.dot_width_mm
-        beside_mm = self._half_mm + aside_mm
+        """Ticks at which the array is over a line, or at most a dot's width beside it."""
+        beside_mm = self._half_mm + self.geometry.dot_width_mm
         return exploration.within(-beside_mm, right_mm + beside_mm)
 
     def _felt(self, exploration: FeltFrames, weights: NDArray[np.float32]) -> NDArray[np.float32]:

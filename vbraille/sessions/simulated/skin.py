@@ -37,11 +37,6 @@ class FeltFrames:
         Times of the ticks, counted from any moment.
     y_mm, theta_rad : float64[n], optional
         Places down the canvas, and angles by which the array is turned, where a picture is felt.
-
-    Raises
-    ------
-    ValueError
-        If the three differ in length, or time goes back.
     """
 
     frames: NDArray[np.floating]
@@ -49,16 +44,6 @@ class FeltFrames:
     time_s: NDArray[np.float64]
     y_mm: NDArray[np.float64] | None = None
     theta_rad: NDArray[np.float64] | None = None
-
-    def __post_init__(self) -> None:
-        ticks = {len(self.frames), len(self.x_mm), len(self.time_s)}
-        if self.frames.ndim != 3 or len(ticks) > 1:
-            raise ValueError(
-                f"frames, positions and times have shapes {self.frames.shape}, {self.x_mm.shape} "
-                f"and {self.time_s.shape}; they must be [n, rows, columns], [n] and [n]"
-            )
-        if not (np.diff(self.time_s) >= 0).all():
-            raise ValueError("time goes back or is not a number; it must increase")
 
     def within(self, low_mm: float, high_mm: float) -> FeltFrames:
         """Ticks whose place is known, with the array's centre between two places."""
@@ -166,8 +151,6 @@ class Rates:
         Longest distance between two values between which the line counts as felt.
     """
 
-    __slots__ = ("_gap_mm", "_start_mm", "_step_mm", "_u_mm", "_weights")
-
     def __init__(self, wave: Wave, step_mm: float, gap_mm: float) -> None:
         u_mm = wave.u_mm
         self._u_mm, self._step_mm, self._gap_mm = u_mm, step_mm, gap_mm
@@ -189,8 +172,10 @@ class Rates:
     def rms(self, left_mm: float, right_mm: float, sigma_mm: float) -> NDArray[np.float64]:
         """Rms rate between two places by equation 3; float64[channels], NaN if not felt there."""
         smooth, felt = self._smoothed(left_mm, right_mm, sigma_mm)
-        rate = np.diff(smooth, axis=1) / self._step_mm
-        return _rms(rate, felt)
+        if np.mean(felt) < _REACHED:
+            return np.full(len(smooth), np.nan)
+        rates = np.diff(smooth, axis=1)[:, felt] / self._step_mm
+        return np.sqrt(np.mean(rates**2, axis=1))
 
     def _smoothed(
         self, left_mm: float, right_mm: float, sigma_mm: float
@@ -202,10 +187,10 @@ class Rates:
         felt = self._covered(middle_mm)
         reach = math.ceil(_TAILS * sigma_mm / self._step_mm)
         kernel = np.exp(-((np.arange(-reach, reach + 1) * self._step_mm / sigma_mm) ** 2) / 2)
-        total, *sums = (
-            np.convolve(self._cut(row, first - reach, count + 2 * reach), kernel, "valid")
-            for row in self._weights
-        )
+        points = np.arange(first - reach, first + count + reach)
+        known = (points >= 0) & (points < self._weights.shape[1])
+        near = np.where(known, self._weights[:, points * known], 0.0)
+        total, *sums = (np.convolve(row, kernel, "valid") for row in near)
         return np.array(sums) / np.maximum(total, np.finfo(float).tiny), felt
 
     def _covered(self, at_mm: NDArray[np.floating]) -> NDArray[np.bool_]:
@@ -213,19 +198,3 @@ class Rates:
         inside = (after > 0) & (after < self._u_mm.size)
         after = np.clip(after, 1, max(self._u_mm.size - 1, 1))
         return inside & (self._u_mm[after] - self._u_mm[after - 1] <= self._gap_mm)
-
-    @staticmethod
-    def _cut(row: NDArray[np.float64], first: int, count: int) -> NDArray[np.float64]:
-        """Part of a row from an index on, with 0 where it reaches beyond the row."""
-        cut = np.zeros(count)
-        low = max(first, 0)
-        high = max(min(first + count, row.size), low)  # all of it may be beyond the row
-        cut[low - first : high - first] = row[low:high]
-        return cut
-
-
-def _rms(values: NDArray[np.float64], felt: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Root mean square of what was felt, by channel; NaN if too little of the way was."""
-    if np.mean(felt) < _REACHED:
-        return np.full(len(values), np.nan)
-    return np.sqrt(np.mean(values[:, felt] ** 2, axis=1))

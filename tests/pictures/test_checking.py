@@ -2,8 +2,8 @@
 
 import pytest
 
-from vbraille.feeling.checking import felt_advice
-from vbraille.feeling.loading import load_scene
+from vbraille.pictures.checking import felt_advice
+from vbraille.pictures.loading import load_scene
 from vbraille.render import MODELS
 from vbraille.scene.checking import check_scene
 

@@ -14,7 +14,7 @@ from vbraille.scene.patterns import Group
 
 if TYPE_CHECKING:
     from vbraille.display import Display
-    from vbraille.feeling.loading import LoadedScene
+    from vbraille.pictures.loading import LoadedScene
 
 _COMPILED: Final = ("multiply", "add", "maximum", "overwrite")  # others are a group's
 
