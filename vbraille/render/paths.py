@@ -176,7 +176,7 @@ def _row_segments(row: DotRow, radius_mm: float) -> Iterator[Numbers]:
 
 
 def _along(seen: Numbers, segment: Numbers) -> float:
-    """How far a segment goes along another one's direction, and `_across` how far across it."""
+    """Share of a segment along another one's direction, and below across it."""
     return segment[2] * seen[2] + segment[3] * seen[3]
 
 
