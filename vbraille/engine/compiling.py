@@ -10,7 +10,6 @@ from vbraille.engine.record import FLOATS, INTS
 from vbraille.engine.ticks import replay
 from vbraille.render import MODELS, work
 from vbraille.render.compiling import SceneMap, compile_scene
-from vbraille.render.program import scratch_for
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.textures import Uniform
 
@@ -28,10 +27,9 @@ def compile_all() -> None:
         compile_scene(_SCENE, display).poses(np.zeros(1), np.zeros(1))
         ints, floats = np.zeros((1, len(INTS)), np.int64), np.zeros((1, len(FLOATS)))
         frames = np.zeros((4, 1, *display.shape))
-        scratch, at = scratch_for(display.shape), np.zeros(work.AT)
         output, held, target = frames[1:, 0]
-        numbers, table = line.numbers, line.table
-        replay(numbers, table, scratch, ints, floats, at, output, held, target, frames[0])
+        program, at = (line.numbers, line.table, line.scratch), np.zeros(work.AT)
+        replay(*program, ints, floats, at, output, held, target, frames[0])
     SceneMap(_SCENE).deflections(np.zeros(1), np.zeros(1))
 
 
