@@ -152,7 +152,7 @@ class _Check:
                 yield (
                     pattern,
                     (
-                        f'is down all over in its channel "{pattern.channel}", so that nothing of it '
+                        f'is down all over in its channel "{pattern.channel}", so nothing of it '
                         f'is felt; write channel = "{other}", or inverted_source = true'
                     ),
                 )

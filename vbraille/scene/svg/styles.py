@@ -58,13 +58,13 @@ _PROPERTIES = {
     **dict.fromkeys(("x", "y", "cx", "cy", "r"), ("0", is_length)),
     **dict.fromkeys(("rx", "ry", "width", "height"), ("auto", _is_size)),
     "stop-color": ("black", is_paint),
-    # Drawings in drawings hide what is outside of them, whatever CSS says.
-    "overflow": ("hidden", ("visible", "hidden", "scroll", "auto")),
+    "overflow": ("visible", ("visible", "hidden", "scroll", "auto")),
 }  # fmt: skip
 INITIAL: Style = {name: value for name, (value, _) in _PROPERTIES.items()}
 _SHORTHANDS = {"marker": ("marker-start", "marker-mid", "marker-end")}
 # Attributes of these names are something else than the property.
 _NO_ATTRIBUTES = frozenset(("rotate", "scale", "translate"))
+_HIDING = frozenset(("svg", "symbol", "marker"))  # what is outside of their viewport
 _TEXTS = frozenset(("text", "tspan", "tref"))
 _MOST_CSS = 500_000  # characters
 _MOST_COMBINED = 4  # elements that a selector names, one within or after another
@@ -195,6 +195,8 @@ class StyleSheets:
                 )
         inherited = {name: above[name] for name in _INHERITED}
         found = INITIAL | inherited
+        if name_of(element) in _HIDING and element.getparent() is not None:
+            found["overflow"] = "hidden"
         for name, value, _ in sorted(said, key=lambda one: one[2]):
             if value == "inherit":
                 found[name] = above[name]
