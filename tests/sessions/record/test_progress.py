@@ -55,7 +55,7 @@ def test_an_answer_that_is_taken_back_comes_again(tmp_path):
     story.tell("answer", second, answer="⠁⠁")
     assert story.answer().number == 3
     assert story.progress.next_trial is None
-    assert story.progress.last_answered.number == 3
+    assert story.progress.newest_given.trial == 3
 
 
 def test_a_confidence_alone_is_asked_after_a_resume(tmp_path):

@@ -247,22 +247,18 @@ def put(table: Procedure, design: AnyDesign, trial: Trial, level: Level) -> Tria
 
 
 def outcome_of(
-    design: AnyDesign, question: Question, trial: Trial, level: float, answer: str, t_s: float
+    table: Procedure | None,
+    design: AnyDesign,
+    question: Question,
+    trial: Trial,
+    answer: str,
+    t_s: float,
 ) -> Outcome:
-    """Return what an answer tells a procedure.
-
-    Parameters
-    ----------
-    trial
-        The trial as it was shown.
-    level
-        Value that a string was shown at.
-    answer, t_s
-        The answer, and when it was given.
-    """
+    """Return what an answer to a trial, as it was shown, tells a procedure."""
     positive = question.positive(trial, answer)
     if not isinstance(design, Compared):
-        return Outcome((level,), positive, t_s)
+        assert table is not None, "it is checked"
+        return Outcome((getattr(trial.stimuli[0].look, table.parameter or ""),), positive, t_s)
     if design.reference is None:
         chosen = trial.values[int(answer) - 1]
         return Outcome(tuple(sorted(trial.values)), chosen == min(trial.values), t_s)

@@ -140,12 +140,16 @@ class Progress:
     def shown(self, trial: Trial) -> Trial | None:
         """Return a trial of the plan as it is shown; None if a procedure leaves it out."""
         procedure, design = self.protocol.procedure, self.protocol.design
-        if self._was_decided(trial):
-            cues = self._cues(trial)
-            if trial.values and cues:
-                return trial.with_values(design.parameter, tuple(self._values(trial, cues)))
-            if procedure is not None and cues and cues[-1].data.get("value") is not None:
-                return trial.at(procedure.parameter or "", cues[-1].data["value"])
+        events = self.events.get(trial.key, ())
+        if any(event.kind in DECIDING for event in events):
+            newest = max(event.attempt or 0 for event in events)
+            cues = [e.data for e in events if e.kind == "cue" and e.attempt == newest]
+            if trial.values and cues:  # at what they were shown last
+                values = dict(enumerate(trial.values))
+                values |= {cue["stimulus"]: cue["value"] for cue in cues}
+                return trial.with_values(design.parameter, tuple(values.values()))
+            if procedure is not None and cues and cues[-1].get("value") is not None:
+                return trial.at(procedure.parameter or "", cues[-1]["value"])
             return trial
         if procedure is None or trial.practice or trial.catch:
             return trial
@@ -153,40 +157,21 @@ class Progress:
         level = procedure.next(design, history, self._seed(trial.condition))
         return None if level is None else put(procedure, design, trial, level)
 
-    def _was_decided(self, trial: Trial) -> bool:
-        return any(event.kind in DECIDING for event in self.events.get(trial.key, ()))
-
-    def _cues(self, trial: Trial) -> list[Event]:
-        """Return the cues of the newest attempt at a trial."""
-        events = self.events.get(trial.key, ())
-        newest = max((event.attempt or 0 for event in events), default=0)
-        return [event for event in events if event.kind == "cue" and event.attempt == newest]
-
-    def _values(self, trial: Trial, cues: list[Event]) -> list[float]:
-        """Return the values that the stimuli of a trial were shown at last."""
-        values = trial.values
-        for cue in cues:
-            values[cue.data["stimulus"]] = cue.data["value"]
-        return values
-
     def _seed(self, condition: str) -> str:
         return f"{self.protocol.name} {self.plan.participant} {self.plan.seed} {condition}"
 
     def _history(self, condition: str) -> list[Outcome]:
         """Return what the answers of a condition tell a procedure."""
-        found = self._outcomes.get(condition)
-        if found is None:
+        if condition not in self._outcomes:
             found = self._outcomes[condition] = []
+            asks, procedure = self.protocol.asks, self.protocol.procedure
             for trial in self._in_conditions[condition]:
                 event = self.answers.get(trial.key)
-                shown = self.shown(trial) if event is not None and not trial.catch else None
+                shown = None if event is None or trial.catch else self.shown(trial)
                 if event is not None and shown is not None:
-                    level = self._cues(trial)[-1].data["value"]
-                    asks, answer = self.protocol.asks, event.data["answer"]
-                    found.append(
-                        outcome_of(self.protocol.design, asks, shown, level, answer, event.t_s)
-                    )
-        return found
+                    given = event.data["answer"], event.t_s
+                    found.append(outcome_of(procedure, self.protocol.design, asks, shown, *given))
+        return self._outcomes[condition]
 
     @property
     def found(self) -> list[str]:
@@ -206,14 +191,6 @@ class Progress:
         """The newest answer or reply that stands; None if there is none."""
         given = [*self.answers.values(), *self.replies.values()]
         return max(given, key=lambda event: event.n, default=None)
-
-    @property
-    def last_answered(self) -> Trial | None:
-        """The trial that was answered last; None if no answer stands."""
-        if not self.answers:
-            return None
-        newest = max(self.answers.values(), key=lambda event: event.n)
-        return next(trial for trial in self.plan.trials if trial.key == newest.key)
 
     @property
     def done(self) -> int:

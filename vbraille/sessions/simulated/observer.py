@@ -163,8 +163,8 @@ class Observer:
         strong = noisy[noisy > np.nanmax(noisy) / 2]
         criterion = strong.mean() / 2 if strong.size else math.inf
         masks = (noisy > criterion) @ [mask_of([dot]) for dot in PLACES]
-        known = ~np.isnan(noisy).all(axis=1)
-        return [int(mask) if felt else None for mask, felt in zip(masks, known, strict=True)]
+        rows = zip(masks, noisy, strict=True)
+        return [None if np.isnan(row).all() else int(mask) for mask, row in rows]
 
     def read(
         self, exploration: FeltFrames, places: int, random: np.random.Generator
