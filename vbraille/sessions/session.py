@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from msgspec import Meta, Struct, ValidationError, convert, structs
 
-from vbraille.errors import InputError, VbrailleError
+from vbraille.errors import InputError
 from vbraille.names import likeness
 from vbraille.sessions.planning.loading import load_protocol
 from vbraille.sessions.planning.plan import Plan, make_plan
@@ -277,7 +277,7 @@ def nearly_same(folder: Path, participant: str) -> str | None:
 
     None if there is no such pseudonym, or the participant has sessions there.
     """
-    known = {_participant_of(path) for path in folder.glob("*.session")} - {""}
+    known = {record.participant_of(path) for path in folder.glob("*.session")} - {""}
     if participant in known:
         return None
     own = likeness(participant, person=True)
@@ -287,16 +287,9 @@ def nearly_same(folder: Path, participant: str) -> str | None:
 def next_number(path: Path, participant: str) -> int:
     """Return the number of a participant's next session in the folder of a new file."""
     return 1 + sum(
-        _participant_of(each) == participant for each in path.absolute().parent.glob("*.session")
+        record.participant_of(each) == participant
+        for each in path.absolute().parent.glob("*.session")
     )
-
-
-def _participant_of(path: Path) -> str:
-    try:
-        with record.reading(path) as db:
-            return db.execute("SELECT participant FROM session").fetchone()[0]
-    except (VbrailleError, OSError):
-        return ""
 
 
 def free_path(participant: str, protocol: str) -> Path:

@@ -356,7 +356,7 @@ def _check_shown(protocol: Protocol, condition: Condition) -> None:
         raise WrongValue(key, "has no table or scene, and others have; give it one, or [display]")
     table = protocol.procedure
     chosen = table.parameter if table is not None else None
-    if {protocol.design.parameter, chosen} & condition.given.keys():
+    if protocol.varied in condition.given:
         raise WrongValue(key, "sets what [design] or [procedure] varies; leave it out")
     looks = [look]
     if table is not None and chosen is not None:  # strings are checked at both ends

@@ -247,18 +247,18 @@ def put(table: Procedure, design: AnyDesign, trial: Trial, level: Level) -> Tria
 
 
 def outcome_of(
-    table: Procedure | None,
-    design: AnyDesign,
-    question: Question,
-    trial: Trial,
-    answer: str,
-    t_s: float,
+    design: AnyDesign, question: Question, trial: Trial, level: float, answer: str, t_s: float
 ) -> Outcome:
-    """Return what an answer to a trial, as it was shown, tells a procedure."""
+    """Return what an answer to a trial, as it was shown, tells a procedure.
+
+    Parameters
+    ----------
+    level
+        Value of what the procedure varies, if a string was shown.
+    """
     positive = question.positive(trial, answer)
     if not isinstance(design, Compared):
-        assert table is not None, "it is checked"
-        return Outcome((getattr(trial.stimuli[0].look, table.parameter or ""),), positive, t_s)
+        return Outcome((level,), positive, t_s)
     if design.reference is None:
         chosen = trial.values[int(answer) - 1]
         return Outcome(tuple(sorted(trial.values)), chosen == min(trial.values), t_s)

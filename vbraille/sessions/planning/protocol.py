@@ -357,6 +357,11 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
         return Which() if isinstance(self.design, Compared) else Identify()
 
     @property
+    def varied(self) -> str:
+        """Parameter that stimuli are compared by, or that a procedure varies; empty for none."""
+        return self.design.parameter or getattr(self.procedure, "parameter", None) or ""
+
+    @property
     def block_order(self) -> str:
         """Order of conditions in blocks: listed, shuffled, balanced or table."""
         kind = self.order.kind if self.order else self.design.order or "listed"

@@ -139,23 +139,23 @@ class Progress:
 
     def shown(self, trial: Trial) -> Trial | None:
         """Return a trial of the plan as it is shown; None if a procedure leaves it out."""
-        procedure, design = self.protocol.procedure, self.protocol.design
+        procedure, varied = self.protocol.procedure, self.protocol.varied
         events = self.events.get(trial.key, ())
         if any(event.kind in DECIDING for event in events):
             newest = max(event.attempt or 0 for event in events)
             cues = [e.data for e in events if e.kind == "cue" and e.attempt == newest]
-            if trial.values and cues:  # at what they were shown last
-                values = dict(enumerate(trial.values))
-                values |= {cue["stimulus"]: cue["value"] for cue in cues}
-                return trial.with_values(design.parameter, tuple(values.values()))
-            if procedure is not None and cues and cues[-1].get("value") is not None:
-                return trial.at(procedure.parameter or "", cues[-1]["value"])
-            return trial
+            if not varied or not cues:
+                return trial
+            if not trial.values:
+                return trial.at(varied, cues[-1]["value"])
+            values = dict(enumerate(trial.values))
+            values |= {cue["stimulus"]: cue["value"] for cue in cues}  # the last one of each
+            return trial.with_values(varied, list(values.values()))
         if procedure is None or trial.practice or trial.catch:
             return trial
         history = self._history(trial.condition)
-        level = procedure.next(design, history, self._seed(trial.condition))
-        return None if level is None else put(procedure, design, trial, level)
+        level = procedure.next(self.protocol.design, history, self._seed(trial.condition))
+        return None if level is None else put(procedure, self.protocol.design, trial, level)
 
     def _seed(self, condition: str) -> str:
         return f"{self.protocol.name} {self.plan.participant} {self.plan.seed} {condition}"
@@ -164,13 +164,14 @@ class Progress:
         """Return what the answers of a condition tell a procedure."""
         if condition not in self._outcomes:
             found = self._outcomes[condition] = []
-            asks, procedure = self.protocol.asks, self.protocol.procedure
+            asks, design = self.protocol.asks, self.protocol.design
             for trial in self._in_conditions[condition]:
                 event = self.answers.get(trial.key)
                 shown = None if event is None or trial.catch else self.shown(trial)
                 if event is not None and shown is not None:
+                    level = getattr(shown.stimuli[0].look, self.protocol.varied)
                     given = event.data["answer"], event.t_s
-                    found.append(outcome_of(procedure, self.protocol.design, asks, shown, *given))
+                    found.append(outcome_of(design, asks, shown, level, *given))
         return self._outcomes[condition]
 
     @property

@@ -305,6 +305,15 @@ def reading(path: Path) -> Iterator[sqlite3.Connection]:
         yield db
 
 
+def participant_of(path: Path) -> str:
+    """Return whose session a file is; empty if it cannot be read."""
+    try:
+        with reading(path) as db:
+            return str(db.execute("SELECT participant FROM session").fetchone()[0])
+    except (VbrailleError, OSError, TypeError):
+        return ""
+
+
 def connect(path: Path, mode: str) -> sqlite3.Connection:
     """Open a file of SQLite, which does not wait for another console."""
     uri = f"{path.absolute().as_uri()}?mode={mode}"

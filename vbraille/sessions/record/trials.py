@@ -31,15 +31,6 @@ class Column(NamedTuple):
     unit: str = ""
     values: str = ""
 
-    def to_bids(self) -> dict[str, Any]:
-        """Return it as BIDS has it in the JSON beside a table."""
-        told: dict[str, Any] = {"Description": self.meaning}
-        if self.unit:
-            told["Units"] = self.unit
-        if self.values:
-            told["Levels"] = {value: value for value in self.values.split(", ")}
-        return told
-
 
 with Path(__file__).with_name("columns.csv").open(encoding="utf-8", newline="") as _file:
     _COLUMNS = list(csv.reader(_file))[1:]
@@ -219,8 +210,9 @@ class _Table:
         }
         cue, ended = _first(own, "cue"), _first(own[::-1], "ended")
         if cue is not None:
-            exposed = ended is None or ended.data.get("by") == "exposure"
-            until = answer if exposed else ended
+            until = answer
+            if ended is not None and ended.data.get("by") != "exposure":
+                until = ended
             row["response_s"] = round(until.t_s - cue.t_s - _paused_s(own), 6)
         return row
 
