@@ -16,11 +16,10 @@ from vbraille.sessions.planning.loading import parse_protocol
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import edges_mm
 from vbraille.sessions.planning.trial import Trial
-from vbraille.sessions.record.movement import duration, pauses
+from vbraille.sessions.record.movement import describe, duration, pauses
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Content, Event, reading
 from vbraille.sessions.record.record import read as read_record
-from vbraille.sessions.record.strokes import describe
 from vbraille.sessions.record.ticks import read_ticks
 
 
