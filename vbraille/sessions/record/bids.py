@@ -51,9 +51,9 @@ RECORDED = {
     "x_mm": ("x_mm", "%.6g", Column("place of the array's centre along the line", "mm")),
     "y_mm": ("y_mm", "%.6g", Column("place across the lines; 0 if not measured", "mm")),
     "speed_mm_s": ("vx_mm_s", "%.6g", Column("of the hand, to the right", "mm/s")),
-    "frame": ("tick", "%d", Column("number of the frame, from 0")),
-    "line": ("line", "%d", Column("number of what was shown last; 0 before the first")),
-    "flags": ("flags", "%d", Column("bits, as docs/session-format.md has them")),
+    "frame": ("tick", "%.12g", Column("number of the frame, from 0")),
+    "line": ("line", "%.12g", Column("number of what was shown last; 0 before the first")),
+    "flags": ("flags", "%.12g", Column("bits, as docs/session-format.md has them")),
 }
 SAID = ("answer", "confidence", "reply", "text", "what", "why", "by")
 WORDS = ("reply", "text", "why", "what")  # what anonymous datasets leave out
@@ -206,15 +206,9 @@ def _events(events: list[Event], ticks: NDArray[np.void], anonymous: bool) -> by
 
 def _recording(ticks: NDArray[np.void]) -> bytes:
     """Return ticks as a table with a row for each deadline; n/a where one was missed."""
-    due = ticks["tick"] + ticks["late"]
-    form = "\t".join(form for _, form, _ in RECORDED.values()) + "\n"
-    missing = "\t".join(["n/a"] * len(RECORDED)) + "\n"
-    packed = io.BytesIO()
-    with gzip.GzipFile(fileobj=packed, mode="wb", compresslevel=3, mtime=0) as file:
-        after = int(due[0])
-        columns = [ticks[field].tolist() for field, _, _ in RECORDED.values()]
-        for number, values in enumerate(zip(*columns, strict=True)):
-            file.write((missing * max(int(due[number]) - after, 0)).encode())
-            file.write((form % values).replace("nan", "n/a").encode())
-            after = int(due[number]) + 1
-    return packed.getvalue()
+    due = ticks["tick"] + ticks["late"] - ticks["tick"][0] - ticks["late"][0]
+    table = np.full((due[-1] + 1, len(RECORDED)), np.nan)
+    table[due] = np.column_stack([ticks[field] for field, _, _ in RECORDED.values()])
+    text = io.BytesIO()
+    np.savetxt(text, table, [form for _, form, _ in RECORDED.values()], "\t")
+    return gzip.compress(text.getvalue().replace(b"nan", b"n/a"), 3, mtime=0)
