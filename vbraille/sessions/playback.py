@@ -14,12 +14,6 @@ from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import KINDS, Event
 from vbraille.sessions.record.replay import Replay
 
-# Kinds of moments in the live view, by the kinds of events; others are notes.
-MOMENTS = {
-    "cue": "cue", "warning": "cue", "contact": "line", "read": "line", "ended": "line",
-    "answer": "answer", "undo": "answer", "missed": "answer", "repeat": "trial", "fault": "fault",
-    "well": "fault", "pause": "pause", "go": "pause", "break": "pause",
-}  # fmt: skip
 SAID = ("answer", "what", "text", "why", "by")  # what of an event's data is said
 
 
@@ -96,8 +90,8 @@ class SessionPlayback(Playback):
 
     def _moment(self, event: Event) -> PlayedEvent:
         said = ", ".join(str(event.data[name]) for name in SAID if event.data.get(name))
-        text = f"{KINDS[event.kind]}{f': {said}' if said else ''}"
-        kind = MOMENTS.get(event.kind, "note")
+        text = f"{KINDS[event.kind].meaning}{f': {said}' if said else ''}"
+        kind = KINDS[event.kind].moment
         trial = self._trials[event.key] if event.key else None
         if trial is None:
             return PlayedEvent(event.t_s, kind, text)

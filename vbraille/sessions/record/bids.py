@@ -25,7 +25,7 @@ from vbraille.files import write_files
 from vbraille.names import likeness
 from vbraille.sessions.record.record import Content, Event, read, reading
 from vbraille.sessions.record.ticks import read_all
-from vbraille.sessions.record.trials import Column, codebook, protocol_of, rows, to_csv
+from vbraille.sessions.record.trials import COLUMNS_OF, Column, codebook, protocol_of, rows, to_csv
 
 DATASET, README = "dataset_description.json", "README"
 PEOPLE, PSEUDONYM = "participants.tsv", "pseudonym"
@@ -38,23 +38,10 @@ session that was stopped and gone on with has several runs. *_beh.tsv has a row 
 *_events.tsv what happened in a run, and *_recording-carriage_physio.tsv.gz where the array was at
 each moment. The file of the same name that ends in .json says what each column holds.
 """
-EVENTS = {
-    "onset": Column("from the first row of the run's recording", "s"),
-    "duration": Column("no event has one that is known", "s"),
-    "trial_type": Column("what happened, by the kinds of docs/session-format.md"),
-    "practice": Column("1 in a trial of practice, else 0"),
-    "trial": Column("number of the trial that it happened in"),
-    "value": Column("answer, reply, note, or what else the event says"),
-}
-# Columns of a recording: field of the ticks, its format, and what it holds.
-RECORDED = {
-    "x_mm": ("x_mm", "%.6g", Column("place of the array's centre along the line", "mm")),
-    "y_mm": ("y_mm", "%.6g", Column("place across the lines; 0 if not measured", "mm")),
-    "speed_mm_s": ("vx_mm_s", "%.6g", Column("of the hand, to the right", "mm/s")),
-    "frame": ("tick", "%.12g", Column("number of the frame, from 0")),
-    "line": ("line", "%.12g", Column("number of what was shown last; 0 before the first")),
-    "flags": ("flags", "%.12g", Column("bits, as docs/session-format.md has them")),
-}
+EVENTS, RECORDED = COLUMNS_OF["events"], COLUMNS_OF["recording"]
+# Fields of the ticks that a recording's columns are, and their formats.
+FIELDS = {"x_mm": "%.6g", "y_mm": "%.6g", "vx_mm_s": "%.6g", "tick": "%.12g", "line": "%.12g",
+          "flags": "%.12g"}  # fmt: skip
 SAID = ("answer", "confidence", "reply", "text", "what", "why", "by")
 WORDS = ("reply", "text", "why", "what")  # what anonymous datasets leave out
 
@@ -156,8 +143,7 @@ def _files(content: Content, stem: str, anonymous: bool) -> dict[str, bytes]:
                 conditions = events[0].data.get("conditions", {})
                 rate_hz = conditions.get("rate_hz", 1000.0)
                 sampled = {"SamplingFrequency": rate_hz, "StartTime": 0.0}
-                columns = {column: each[-1] for column, each in RECORDED.items()}
-                sampled |= {"Columns": list(columns)} | _told(columns)
+                sampled |= {"Columns": list(RECORDED)} | _told(RECORDED)
                 name += "_recording-carriage_physio"
                 made[f"{name}.tsv.gz"] = _recording(ticks)
                 made[f"{name}.json"] = _json(sampled)
@@ -207,8 +193,8 @@ def _events(events: list[Event], ticks: NDArray[np.void], anonymous: bool) -> by
 def _recording(ticks: NDArray[np.void]) -> bytes:
     """Return ticks as a table with a row for each deadline; n/a where one was missed."""
     due = ticks["tick"] + ticks["late"] - ticks["tick"][0] - ticks["late"][0]
-    table = np.full((due[-1] + 1, len(RECORDED)), np.nan)
-    table[due] = np.column_stack([ticks[field] for field, _, _ in RECORDED.values()])
+    table = np.full((due[-1] + 1, len(FIELDS)), np.nan)
+    table[due] = np.column_stack([ticks[field] for field in FIELDS])
     text = io.BytesIO()
-    np.savetxt(text, table, [form for _, form, _ in RECORDED.values()], "\t")
+    np.savetxt(text, table, [*FIELDS.values()], "\t")
     return gzip.compress(text.getvalue().replace(b"nan", b"n/a"), 3, mtime=0)

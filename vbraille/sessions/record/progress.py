@@ -60,7 +60,6 @@ class Progress:
         self._in_conditions: defaultdict[str, list[Trial]] = defaultdict(list)
         for trial in self._trials:
             self._in_conditions[trial.condition].append(trial)
-        self._first = 0  # no trial before that place of the plan is open
         self._outcomes: dict[str, list[Outcome]] = {}
         for event in events:
             self.take(event)
@@ -102,8 +101,6 @@ class Progress:
         elif event.kind == "missed":
             self.missed.add(key)
             self._broken = False
-        else:
-            self._first = 0
 
     @property
     def t_s(self) -> float:
@@ -118,13 +115,9 @@ class Progress:
     @property
     def next_trial(self) -> Trial | None:
         """The first trial that is not over, as it is shown; None after the last."""
-        for place in range(self._first, len(self.plan.trials)):
-            trial = self.plan.trials[place]
-            if self._is_over(trial):
-                self._first += place == self._first
-            elif trial.practice and self.practice_is_over:
-                continue
-            elif (shown := self.shown(trial)) is not None:
+        for trial in self.plan.trials:
+            left = not (self._is_over(trial) or (trial.practice and self.practice_is_over))
+            if left and (shown := self.shown(trial)) is not None:
                 return shown
         return None
 

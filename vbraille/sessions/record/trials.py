@@ -32,9 +32,10 @@ class Column(NamedTuple):
 
 
 with Path(__file__).with_name("columns.csv").open(encoding="utf-8", newline="") as _file:
-    _COLUMNS = list(csv.reader(_file))[1:]
-COLUMNS = {name: Column(*told) for name, *told, of in _COLUMNS if of == "all"}
-OF_PASSAGES = {name: Column(*told) for name, *told, of in _COLUMNS if of == "passages"}
+    COLUMNS_OF: dict[str, dict[str, Column]] = {}
+    for _name, *_told, _of in list(csv.reader(_file))[1:]:
+        COLUMNS_OF.setdefault(_of, {})[_name] = Column(*_told)
+COLUMNS, OF_PASSAGES = COLUMNS_OF["all"], COLUMNS_OF["passages"]
 LENGTHS = [name for name in COLUMNS if name.endswith("_mm")]
 # What may tell who a person is, or where the session was.
 PRIVATE = ("notes", "cue_time", "answer_time", "answers_from", "faults")
