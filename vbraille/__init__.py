@@ -24,13 +24,17 @@ if TYPE_CHECKING:
     from vbraille.errors import DeviceError as DeviceError
     from vbraille.errors import InputError as InputError
     from vbraille.errors import VbrailleError as VbrailleError
-    from vbraille.pictures.framed import open_framed as open_scene
+    from vbraille.pictures.framed import (
+        open_framed as open_scene,  # noqa: F401  # pyright: ignore[reportUnusedImport]
+    )
     from vbraille.reading.frames import RenderedLine as RenderedLine
     from vbraille.reading.frames import RenderedPage as RenderedPage
     from vbraille.reading.frames import render_page as render_page
     from vbraille.reading.frames import render_text as render_text
     from vbraille.reading.opening import OpenDevice as OpenDevice
-    from vbraille.reading.opening import open_to_read as open  # noqa: A004
+    from vbraille.reading.opening import (
+        open_to_read as open,  # noqa: A004, F401  # pyright: ignore[reportUnusedImport]
+    )
     from vbraille.recording import Recording as Recording
     from vbraille.render.braille.mappings import MAPPINGS as MAPPINGS
     from vbraille.render.braille.models import LATERO as LATERO
@@ -81,40 +85,7 @@ _PLACES = {
     "render_text": "vbraille.reading.frames",
     "translate_text": "vbraille.translate.tables",
 }
-__all__ = [
-    "LATERO",
-    "MAPPINGS",
-    "STRESS2",
-    "STRESS2_8X8",
-    "VBD",
-    "Analysis",
-    "BrailleStyle",
-    "Canvas",
-    "Conditions",
-    "Device",
-    "DeviceError",
-    "Display",
-    "Geometry",
-    "InputError",
-    "Model",
-    "OpenDevice",
-    "Pose",
-    "Recording",
-    "RenderedLine",
-    "RenderedPage",
-    "Scene",
-    "Session",
-    "Straying",
-    "Tuning",
-    "VbrailleError",
-    "analyse",
-    "open",
-    "open_scene",
-    "render_page",
-    "render_text",
-    "testing",
-    "translate_text",
-]
+__all__ = sorted([*_PLACES, "testing"])  # pyright: ignore[reportUnsupportedDunderAll]
 
 
 def __getattr__(name: str) -> object:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
+from typing import Any, NamedTuple
 
 _PLACES = 6  # decimal places, so that ten steps of 0.1 are 1
 
 
-class Knob:
+class Knob(NamedTuple):
     """A number of a style.
 
     Parameters
@@ -26,18 +24,13 @@ class Knob:
         float, or int where only whole steps from `low` make sense.
     """
 
-    def __init__(
-        self,
-        name: str,
-        field: str,
-        low: float,
-        high: float,
-        step: float,
-        unit: str = "",
-        kind: type = float,
-    ) -> None:
-        self.name, self.field, self.unit, self.kind = name, field, unit, kind
-        self.low, self.high, self.step = low, high, step
+    name: str
+    field: str
+    low: float
+    high: float
+    step: float
+    unit: str = ""
+    kind: type = float
 
     @property
     def label(self) -> str:

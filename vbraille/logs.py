@@ -17,8 +17,6 @@ from pathlib import Path
 from vbraille.errors import InputError
 
 _FORMAT = "%(asctime)s.%(msecs)03d %(process)d %(levelname)s %(name)s: %(message)s"
-# If this is set in the environment, faults print their tracebacks.
-_TRACEBACKS = "VBRAILLE_TRACEBACK"
 
 
 class _OneLine(logging.Formatter):
@@ -29,7 +27,7 @@ class _OneLine(logging.Formatter):
         return " ".join(super().format(record).split("\n"))
 
 
-def keep(where: str) -> logging.Handler:
+def keep(where: str) -> None:
     """Keep a log of all that vbraille's modules write, from now on.
 
     Parameters
@@ -42,24 +40,20 @@ def keep(where: str) -> logging.Handler:
     InputError
         If the file cannot be written.
     """
+    path = Path(where).absolute()
     try:
-        handler = (
-            logging.StreamHandler(sys.stderr)
-            if where == "-"
-            else logging.FileHandler(
-                Path(where).absolute(), encoding="utf-8", errors="backslashreplace"
-            )
-        )
+        handler = logging.StreamHandler(sys.stderr)
+        if where != "-":
+            handler = logging.FileHandler(path, encoding="utf-8", errors="backslashreplace")
     except OSError as error:
         raise InputError(f"the log {where} cannot be written: {error.strerror}") from None
     handler.setFormatter(_OneLine(_FORMAT, "%Y-%m-%d %H:%M:%S"))
-    handler.set_name(where if where == "-" else str(Path(where).absolute()))
+    handler.set_name(where if where == "-" else str(path))
     logging.raiseExceptions = False  # a full disk must not stop a reader
     logger = logging.getLogger("vbraille")
     logger.addHandler(handler)
     logger.setLevel(logging.DEBUG)
     logger.propagate = False
-    return handler
 
 
 def kept() -> str | None:
@@ -68,29 +62,8 @@ def kept() -> str | None:
     return next(filter(None, names), None)
 
 
-def stop(handler: logging.Handler) -> None:
-    """Stop keeping the log that `keep` began."""
-    logger = logging.getLogger("vbraille")
-    logger.removeHandler(handler)
-    with suppress(OSError):
-        handler.close()
-    if not logger.handlers:
-        logger.setLevel(logging.NOTSET)
-        logger.propagate = True
-
-
-def want_tracebacks() -> None:
-    """Have faults print their tracebacks from now on, in this process and those it starts."""
-    os.environ[_TRACEBACKS] = "1"
-
-
-def tracebacks_wanted() -> bool:
-    """Tell whether faults print their tracebacks."""
-    return bool(os.environ.get(_TRACEBACKS))
-
-
 def print_traceback(error: BaseException) -> None:
-    """Print the traceback of a fault on standard error, if tracebacks are wanted."""
-    if tracebacks_wanted():
+    """Print the traceback of a fault on standard error, if VBRAILLE_TRACEBACK is set."""
+    if os.environ.get("VBRAILLE_TRACEBACK"):
         with suppress(OSError):
             traceback.print_exception(error)

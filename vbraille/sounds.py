@@ -47,10 +47,6 @@ class Bell:
 
     def play(self, _tone: Pitched, /) -> None:
         """Ring the bell once for any tone."""
-        self.ring()
-
-    def ring(self) -> None:
-        """Ring the bell."""
         if sys.stderr.isatty():
             os.write(sys.stderr.fileno(), b"\a")
 
@@ -78,11 +74,7 @@ class Tones:
             except (self._fault, ValueError) as error:
                 raise OSError(f"there is no audio output ({error})") from None
 
-    def play(self, tone: Pitched, /) -> None:
-        """Begin to play a tone."""
-        self._play(wave(tone), _RATE_HZ)
-
-    def play_melody(self, tones: Sequence[Pitched]) -> None:
+    def play(self, *tones: Pitched) -> None:
         """Begin to play tones one after the other, in place of what is being played.
 
         Raises
@@ -135,11 +127,6 @@ def read_sound(path: Path) -> tuple[NDArray[np.float32], int]:
     middle = 128.0 if kind.itemsize == 1 else 0.0
     whole = samples[: samples.size // channels * channels].reshape(-1, channels)
     return ((whole - middle) / 2.0 ** (8 * kind.itemsize - 1)).astype(np.float32), rate_hz
-
-
-def check_sound(path: Path) -> None:
-    """Check that a file can be played; the errors are those of `read_sound`."""
-    read_sound(path)
 
 
 def wave(tone: Pitched) -> NDArray[np.float32]:

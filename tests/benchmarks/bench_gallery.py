@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tests.benchmarks.timing import Result, seconds
-from vbraille.feeling.composing import compose
-from vbraille.feeling.loading import load_scene
+from vbraille.pictures.composing import compose
+from vbraille.pictures.loading import load_scene
 from vbraille.render import MODELS
 
 if TYPE_CHECKING:

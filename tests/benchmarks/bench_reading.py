@@ -97,6 +97,7 @@ def _frame() -> Result:
         layout = book_of(Path(TEXT).read_text(encoding="utf-8"), width)
         kept = Places(None, print).book("", Path(), "")
         reader = Reader(layout, device, [Heard()], kept)
+        reader.begin()
         loop = Exploration(reader, device, NoKeyboard(), Heard())
         for key in "nnnpnpn" * 5:
             for _ in range(15):
@@ -106,7 +107,7 @@ def _frame() -> Result:
             changed = 0
             while not changed:
                 ticks = device.engine.poll()
-                new = ticks[(ticks["line"] == reader.surface.number)
+                new = ticks[(ticks["line"] == reader.number)
                             & (ticks["flags"] & int(Flag.CHANGED) > 0)]  # fmt: skip
                 changed = int(new["time_ns"][0]) if new.size else 0
                 time.sleep(0.001)

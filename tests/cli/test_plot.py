@@ -40,3 +40,10 @@ def test_the_array_of_a_page_stands_with_its_left_column_where_it_is_told_to(cal
     assert left == [12.5] * 6
     drawn = call("plot", "page", text, "--x", "12.5")
     assert ", left column at 12.5 mm, " in drawn.out.splitlines()[0]
+
+
+def test_another_suffix_is_refused_by_naming_the_two(call, here):
+    said = call("plot", "wave", "--out", "wave.pdf")
+    assert said.code == 2
+    assert ".png or .svg" in said.err
+    assert not list(here.iterdir())

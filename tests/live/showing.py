@@ -77,7 +77,7 @@ class Reading:
             said=["line: 2"],
         )
         self.program = self.style.render(MASKS, self.display)
-        self.ring = Ring.alone(self.display.shape, 4096)
+        self.ring, self.count = Ring.alone(self.display.shape, 4096), 0
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._tick)
 
@@ -93,7 +93,7 @@ class Reading:
         ints, floats, frames = self.ring.columns
         frame = self.frame()
         for _ in range(count):
-            slot, n = self.ring.begin(), self.ring.appended
+            slot, n = self.ring.slot, self.count
             ints[slot] = 0
             ints[slot, :2] = n, time.monotonic_ns()
             ints[slot, INTS.index("line")] = 2
@@ -101,8 +101,8 @@ class Reading:
             floats[slot, :3] = self.x_mm, math.nan, math.nan
             floats[slot, 8] = 1
             frames[slot] = frame
-            self.ring.end()
-        self.ring.publish()
+            self.ring.publish()
+            self.count += 1
 
     def obey(self):
         for asked in self.view.take():

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 from vbraille.braille.cells import Cells
 from vbraille.layout import Line
-from vbraille.pictures import mapping, page, profile, strain, wave
+from vbraille.pictures.series import mapping, page, profile, strain, wave
 from vbraille.render import STRESS2, VBD, Tuning
 from vbraille.translate import Block
 

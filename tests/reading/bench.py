@@ -10,6 +10,7 @@ from vbraille.reading.exploration import Exploration
 from vbraille.reading.places import Places
 from vbraille.reading.reader import Reader
 from vbraille.render import STRESS2, STRESS2_8X8
+from vbraille.simulation.steering import Hold
 from vbraille.testing import ManualClock, simulated_device
 from vbraille.translate import Book, BrailleTable, text_source
 
@@ -74,6 +75,7 @@ class Reading:
         layout = Layout(self.book, width or cells_per_line(model.style.geometry, given.display))
         kept = places.book(digest, Path(f"/{digest}"), "book")
         self.reader = Reader(layout, self.device, [self.heard], kept, fixed=bool(width), **how)
+        self.reader.begin()
         self.loop = Exploration(self.reader, self.device, NoKeyboard(), self.heard)
 
     def __enter__(self):
@@ -115,7 +117,7 @@ class Reading:
     def finger(self, x_mm, y_mm=0.0):
         """Move the finger to a place, where it stays, and give what is said."""
         before = len(self.heard.said)
-        self.device.hold(x_mm, y_mm, 0.0)
+        self.device.engine.give(Hold(x_mm, y_mm, 0.0))
         end_s = time.monotonic() + 10
         while time.monotonic() < end_s:
             self.loop.step()

@@ -32,7 +32,7 @@ class View:
 
 @pytest.fixture
 def seen(monkeypatch):
-    monkeypatch.setattr("vbraille.reading.device.ReadingDevice.ring", lambda _: None)
+    monkeypatch.setattr("vbraille.engine.loop.LocalEngine.reader", lambda _: None, raising=False)
 
     def show(felt):
         view = View()

@@ -12,15 +12,9 @@ from tests.tiers import by_tier
 from vbraille.carriers import latero as arms
 from vbraille.devices.latero.wire import parse_answer
 from vbraille.errors import InputError
-from vbraille.simulation.controls import parse_presses, parse_script
+from vbraille.simulation.controls import parse_moves
 from vbraille.simulation.lateroboard import LateroBoard
-from vbraille.simulation.laterosim import (
-    OFFSETS,
-    LateroCarriage,
-    LateroFaults,
-    LateroSimulator,
-    Network,
-)
+from vbraille.simulation.laterosim import OFFSETS, LateroCarriage, LateroSimulator
 from vbraille.simulation.specs import parse_hand
 
 PATIENCE_S = 20.0
@@ -148,7 +142,7 @@ def test_levels_beyond_rest_are_counted():
 
 def test_its_buttons_are_low_while_they_are_pressed():
     with (
-        simulated(script=parse_presses("1@0s-60s")) as latero,
+        simulated(script=parse_moves("1@0s-60s")) as latero,
         TableClient(latero._socket.getsockname()[1]) as client,
     ):
         until(lambda: client.full([150] * 64)[4] == 0x0020)
@@ -159,7 +153,7 @@ def test_a_script_and_keys_press_its_buttons():
     said = []
     with (
         simulated(
-            script=parse_script("0s press 1\n0s press 2\n", "script"),
+            script=parse_moves("1@0s-60s,2@0s-60s"),
             keys=lambda: next(keys, []),
             say=said.append,
         ) as latero,
@@ -193,29 +187,7 @@ def test_the_hand_reads_along_each_line_and_then_down():
     assert carriage.at(19_000_000) == pytest.approx((0, 217.5, 0))
 
 
-def test_a_network_does_what_it_says_and_counts_it():
-    network = Network(LateroFaults(drop=0.1, late=0.1, double=0.1, foreign=0.1))
-    answer = LateroBoard().receive(
-        (struct.pack(">BBBH5H", 0xCA, 0x11, 1, 7, 0, 0, 0, 0, 0) + bytes(64)).ljust(100, b"\xff")
-    )
-    arrived = [network.carry_answer(answer) for _ in range(1000)]
-    tally = network.tally
-    own = [one for arriving in arrived for one in arriving if one[1] == answer]
-    assert len(own) == 1000 - tally.answers_lost + tally.answers_doubled
-    assert sum(late_s > 0 for late_s, _ in own) >= tally.answers_late > 50
-    assert sum(map(len, arrived)) - len(own) == tally.foreign > 50
-    requests = [network.carry_request() for _ in range(1000)]
-    assert requests.count(0) == tally.requests_lost > 50
-    assert requests.count(2) == tally.requests_doubled > 50
-
-
 def test_a_port_that_is_taken_is_said_in_a_sentence(latero):
     port = latero._socket.getsockname()[1]
     with pytest.raises(InputError, match="choose another port"):
         LateroSimulator(LateroCarriage(parse_hand("slow")), say=print, port=port)
-
-
-@pytest.mark.parametrize("name", ["drop", "late", "double", "foreign"])
-def test_a_chance_is_0_to_1(name):
-    with pytest.raises(ValueError, match=name):
-        LateroFaults(**{name: 1.5})

@@ -177,6 +177,25 @@ class Cells:
             raise ValueError(f"{text[wrong[0]]!r} is not an ASCII braille character")
         return cls.bare(masks)
 
+    @classmethod
+    def from_file(cls, text: str) -> Cells:
+        """Cells of braille as files have it: Unicode patterns, ASCII braille, or both.
+
+        Raises
+        ------
+        ValueError
+            If a character is neither.
+        """
+        codes = np.frombuffer(text.encode("utf-32-le", "surrogatepass"), "<u4")
+        is_pattern = (codes >= UNICODE_BLANK) & (codes < UNICODE_BLANK + _PATTERNS)
+        masks = np.where(is_pattern, codes - UNICODE_BLANK, _BRF_MASKS[np.minimum(codes, 127)])
+        wrong = np.flatnonzero(~is_pattern & (masks == 0xFF))
+        if wrong.size:
+            raise ValueError(
+                f"{text[wrong[0]]!r} is neither ASCII braille nor a Unicode braille pattern"
+            )
+        return cls.bare(masks.astype(np.uint8))
+
     def to_dots(self) -> str:
         """Dot numbers, ``1-2-4`` a cell and ``0`` for a blank one, with a space between cells."""
         return " ".join(map(_DOTS.__getitem__, self.masks.tolist()))
@@ -198,31 +217,3 @@ class Cells:
                 )
             masks.append(mask_of(int(dot) for dot in word if dot not in "-0"))
         return cls.bare(np.array(masks, np.uint8))
-
-
-def masks_of(codes: NDArray[np.uint32]) -> NDArray[np.uint8]:
-    """Dot masks of braille as files have it: Unicode braille patterns, ASCII braille, or both.
-
-    Parameters
-    ----------
-    codes : uint32[n]
-        Code points.
-
-    Returns
-    -------
-    uint8[n]
-        A mask for each of them.
-
-    Raises
-    ------
-    ValueError
-        If a character is neither.
-    """
-    is_pattern = (codes >= UNICODE_BLANK) & (codes < UNICODE_BLANK + _PATTERNS)
-    masks = np.where(is_pattern, codes - UNICODE_BLANK, _BRF_MASKS[np.minimum(codes, 127)])
-    wrong = np.flatnonzero(~is_pattern & (masks == 0xFF))
-    if wrong.size:
-        raise ValueError(
-            f"{chr(codes[wrong[0]])!r} is neither ASCII braille nor a Unicode braille pattern"
-        )
-    return masks.astype(np.uint8)

@@ -72,8 +72,8 @@ class BatchEngine(LocalEngine):
             poses[:, column] = values
         self.clock.sleep_until_ns(int(due_ns[-1]))
         times_ns = np.repeat(due_ns[:, None], 2, axis=1)
-        slot = ring.begin()
-        self.advance(times_ns, poses, device.rested, device.taking, ring.columns, slot)
+        taking = device.taking
+        self.advance(times_ns, poses, device.rested, taking, ring.columns, ring.slot)
         device.write(self.output)
-        ring.end(due_ns.size)
+        ring.publish(due_ns.size)
         return self._take()

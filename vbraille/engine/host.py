@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import math
 import mmap
 import os
 import select
@@ -24,13 +25,11 @@ from vbraille.engine.engine import EndOfLine, Watcher
 from vbraille.engine.record import RingReader, Tally
 from vbraille.errors import DeviceError, InputError, VbrailleError
 from vbraille.files import open_memory, settings_path
-from vbraille.logs import kept, tracebacks_wanted
+from vbraille.logs import kept
 from vbraille.simulation.specs import device_spec
 from vbraille.simulation.steering import to_json
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import numpy as np
     from numpy.typing import NDArray
 
@@ -100,24 +99,12 @@ class Host(Watcher):
         self.calibration: dict[str, Any] | None = None
         self.steered = False
         self._spec = device_spec(spec, hand, seed)
-        self._wanted = wanted
-        self._fits, self._often = fits, often
+        self._wanted = {"wanted": asdict(wanted), "fits": fits, "often": often}
         self._display: Display | None = None
         self._process: subprocess.Popen[bytes] | None = None
-        self._socket: socket.socket | None = None
-        self._memory = -1  # descriptor of the ring's memory
-        self._ring: RingReader | None = None
-        self._ring_of: tuple[memoryview, tuple[int, int], int] | None = None
-        self._unsent: deque[tuple[bytes, int | None]] = deque()
         self._shown: tuple[Program, int, float | None] | None = None
         self._order: HandOrder | None = None
-        self._events: list[Event] = []
-        self._fault: VbrailleError | None = None
-        self._before, self._lost_before = Tally(), 0  # of earlier starts
-        self._paused = False
-        self._switches = 0
-        self._started = self._at_driver = self._ended = self._stalled = False
-        self._ticked_s = 0.0  # when a poll last found a tick
+        self._paused, self._switches = False, 0
 
     def launch(self) -> None:
         """Start the process without waiting for it; `start` waits, once other work is done.
@@ -130,13 +117,14 @@ class Host(Watcher):
         find_driver(self._spec)  # before a process is begun for what is not there
         if self._process is not None:
             self.close()
-        self._before, self._lost_before = self.tally, self.lost
         Watcher.__init__(self)
-        self._ring = self._ring_of = self._fault = None
-        self._started = self._at_driver = self._ended = self._stalled = False
-        self._paused = False
-        self._unsent.clear()
-        self._memory = open_memory("vbraille", 0)
+        self._ring: RingReader | None = None
+        self._fault: VbrailleError | None = None
+        self._events: list[Event] = []
+        self._unsent: deque[tuple[bytes, list[int]]] = deque()
+        self._at_driver = self._ended = self._stalled = self._paused = False
+        self._ticked_s = 0.0  # when a poll last found a tick
+        self._memory = open_memory("vbraille", 0)  # the ring's
         self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         descriptors = theirs.fileno(), self._memory
         self._process = subprocess.Popen(
@@ -149,15 +137,8 @@ class Host(Watcher):
         theirs.close()
         self._socket.setblocking(False)
         _log.info("started process %d to drive %s", self._process.pid, self._spec)
-        self._tell(
-            device=self._spec,
-            wanted=asdict(self._wanted),
-            fits=self._fits,
-            often=self._often,
-            log=kept(),
-            verbose=tracebacks_wanted(),
-            settings=str(settings_path().absolute()),
-        )
+        settings = str(settings_path().absolute())
+        self._tell(device=self._spec, settings=settings, log=kept(), **self._wanted)
 
     def start(self) -> Display:
         """Start the process if need be, and wait until ticks run; again after its death.
@@ -168,19 +149,20 @@ class Host(Watcher):
             If the device cannot be opened, or not in time, or is another than at the first start.
         """
         first = self._display
-        running = self._process is not None and self._process.poll() is None
-        if running and self._started and not self._ended:
-            return self.display
-        if not running or self._started or self._ended:
+        if self._process is None or self._ended or self._process.poll() is not None:
             self.launch()
-        until_s = None
-        while not self._started:
-            select.select((self._channel,), (), (), _LOOK_S)
-            if not self._hear() and not self._started:
+        elif self._ring is not None:
+            return self.display
+        until_s = math.inf
+        while self._ring is None:
+            select.select((self._socket,), (), (), _LOOK_S)
+            if not self._hear() and self._ring is None:
                 raise self._ended_by()
-            if self._at_driver and until_s is None:
-                until_s = time.monotonic() + OPEN_S + self._boot_s()
-            if until_s is not None and time.monotonic() > until_s:
+            if self._at_driver and until_s == math.inf:
+                boot_s = parse_qs(self._spec.partition("?")[2]).get("boot", ["0"])[0]
+                with suppress(ValueError):  # the driver refuses it
+                    until_s = time.monotonic() + OPEN_S + float(boot_s)
+            if time.monotonic() > until_s:
                 assert self._process is not None
                 self._process.kill()
                 self._fault = too_slow(self._spec)
@@ -196,22 +178,6 @@ class Host(Watcher):
                 self.give(self._order)
         return self.display
 
-    def _boot_s(self) -> float:
-        """Time that the spec gives a board to start."""
-        try:
-            return float(parse_qs(self._spec.partition("?")[2])["boot"][0])
-        except (KeyError, ValueError):
-            return 0.0
-
-    @property
-    def _driver(self) -> str:
-        return self._spec.partition(":")[0]
-
-    @property
-    def _channel(self) -> int:
-        assert self._socket is not None
-        return self._socket.fileno()
-
     @property
     def process_id(self) -> int | None:
         """Number of the host process."""
@@ -226,9 +192,8 @@ class Host(Watcher):
 
     @property
     def tally(self) -> Tally:
-        """Counts of what the loops have done, up to the last poll, over all starts of the host."""
-        newest = self.newest
-        return self._before if newest is None else self._before + Tally.of(newest)
+        """Counts of what the loop has done since the last start, up to the last poll."""
+        return Tally() if self.newest is None else Tally.of(self.newest)
 
     @property
     def paused(self) -> bool:
@@ -272,8 +237,9 @@ class Host(Watcher):
         self._shown, self._line = (picture, line, end_mm), line
         self._end = None if end_mm is None else EndOfLine(self.display.span_mm, end_mm)
         memory = open_memory("vbraille-picture", max(picture.nbytes, 1))
-        for part, at in ((picture.numbers, 0), (picture.table, picture.numbers.nbytes)):
-            _write(memory, part.tobytes(), at)
+        with os.fdopen(os.dup(memory), "wb") as out:
+            out.write(picture.numbers.tobytes())
+            out.write(picture.table.tobytes())
         sizes = picture.numbers.size, picture.table.size
         self._tell(memory, show={"line": line, "sizes": sizes})
 
@@ -289,9 +255,9 @@ class Host(Watcher):
 
     def reader(self) -> RingReader:
         """Make another reader of the records, for what watches beside; it only reads."""
-        if self._ring_of is None:
+        if self._process is None or self._ring is None:
             raise DeviceError("no device is open; start the host first")
-        return RingReader(*self._ring_of)
+        return self._ring.another()
 
     def poll(self) -> NDArray[np.void]:
         """Give the records of all ticks since the last poll.
@@ -305,27 +271,23 @@ class Host(Watcher):
         alive = self._hear()
         if self._ring is None:
             raise self._ended_by()
+        lost = self._ring.lost
         ticks = self._ring.drain()
-        self.lost = self._lost_before + self._ring.lost
+        self.lost += self._ring.lost - lost
         self.watch(ticks, self.display)
         if not ticks.size and not alive:
             raise self._ended_by()
-        self._look(ticks.size > 0)
-        return ticks
-
-    def _look(self, ticked: bool) -> None:
-        """Tell once that the driver holds up the loop, and once that it does no more."""
         now_s = time.monotonic()
-        if ticked:
+        if ticks.size:
             self._ticked_s = now_s
-            if self._stalled:
-                self._events.append(Back())
+            self._events += [Back()] * self._stalled
             self._stalled = False
         elif not self._stalled and now_s - self._ticked_s > _STALL_S:
-            self._stalled = True
+            self._stalled = True  # its driver holds up the loop
             self._events.append(Stalled(now_s - self._ticked_s))
+        return ticks
 
-    def take_events(self) -> Sequence[Event]:
+    def take_events(self) -> list[Event]:
         """Take the events of the device, its loop and its ticks since the last call."""
         events, self._events = self._events, []
         return events + self._take_found()
@@ -339,7 +301,7 @@ class Host(Watcher):
             If the device could not be let go. An error that is under way is more, and goes on.
         """
         process = self._process
-        if process is None or self._socket is None:
+        if process is None:
             return
         with suppress(OSError):
             self._socket.shutdown(socket.SHUT_WR)  # the host takes this for the end
@@ -352,13 +314,8 @@ class Host(Watcher):
         fault = None if well else self._ended_by()
         self._process = None
         self._socket.close()
-        for _, descriptor in self._unsent:
-            if descriptor is not None:
-                os.close(descriptor)
-        self._unsent.clear()
-        if self._memory >= 0:
-            os.close(self._memory)
-            self._memory = -1
+        for descriptor in (self._memory, *(each for _, some in self._unsent for each in some)):
+            os.close(descriptor)
         if fault is not None and sys.exc_info()[0] is None:
             raise fault
 
@@ -373,34 +330,32 @@ class Host(Watcher):
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _tell(self, descriptor: int | None = None, **what: object) -> None:
+    def _tell(self, *descriptors: int, **what: object) -> None:
         """Send the host a message, with a descriptor that is closed once it is sent."""
-        self._unsent.append((json.dumps(what).encode(), descriptor))
-        self._flush()
+        if self._process is not None:
+            self._unsent.append((json.dumps(what).encode(), list(descriptors)))
+            self._flush()
 
     def _flush(self) -> None:
         """Send what a host that is held up had no room for."""
-        if self._socket is None:
-            return
-        while self._unsent:
-            message, descriptor = self._unsent[0]
+        while self._process is not None and self._unsent:
+            message, descriptors = self._unsent[0]
             try:
-                socket.send_fds(self._socket, [message], [] if descriptor is None else [descriptor])
+                socket.send_fds(self._socket, [message], descriptors)
             except BlockingIOError:
                 return
             except OSError:
                 pass  # the host has ended, and `_hear` will tell why
-            if descriptor is not None:
+            for descriptor in descriptors:
                 os.close(descriptor)
             self._unsent.popleft()
 
     def _hear(self) -> bool:
         """Take the host's messages; tell whether more may come."""
-        assert self._socket is not None
         assert self._process is not None
         # Asked before reading: all that a process said which has ended is there by then.
         ended = self._process.poll() is not None
-        for _ in range(1000):
+        while True:
             try:
                 message = self._socket.recv(_MOST_BYTES)
             except BlockingIOError:
@@ -410,17 +365,14 @@ class Host(Watcher):
             if not message:
                 return False
             self._take(json.loads(message))
-        return True
 
     def _take(self, told: dict[str, Any]) -> None:
         self._at_driver = self._at_driver or "opening" in told
         if "ready" in told:
             display = self._display = Display(**told["ready"])
             self.calibration, self.steered = told["calibration"], told["steered"]
-            memory = mmap.mmap(self._memory, 0)
-            self._ring_of = memoryview(memory), display.shape, told["ticks"]
-            self._ring = RingReader(*self._ring_of)
-            self._started = True
+            memory = memoryview(mmap.mmap(self._memory, 0))
+            self._ring = RingReader(memory, display.shape, told["ticks"])
         if told.get("event"):
             self._events.append(from_json(json.dumps(told["event"])))
         if "fault" in told:
@@ -436,10 +388,11 @@ class Host(Watcher):
         except subprocess.TimeoutExpired:
             self._process.kill()
             if self._fault is None and self._at_driver:
+                driver = self._spec.partition(":")[0]
                 self._fault = DeviceError(
-                    f"the driver {self._driver} did not let the device go within {_END_S:g} s, "
-                    f"and was ended; switch the device off if it does not rest, and tell the "
-                    f"driver's author"
+                    f"the driver {driver} did not let the device go within {_END_S:g} s, and was "
+                    f"ended; switch the device off if it does not rest, and tell the driver's "
+                    f"author"
                 )
             return self._process.wait()
 
@@ -461,9 +414,3 @@ def too_slow(spec: str) -> DeviceError:
         f"the driver {spec.partition(':')[0]} did not open its device within {OPEN_S:g} s; see "
         f"whether the device is there and switched on, or tell the driver's author"
     )
-
-
-def _write(descriptor: int, content: bytes, at: int) -> None:
-    done = 0
-    while done < len(content):
-        done += os.pwrite(descriptor, content[done:], at + done)

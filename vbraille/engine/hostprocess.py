@@ -20,27 +20,23 @@ import socket
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 import numpy as np
 
 from vbraille.devices import calibration, opened_device
-from vbraille.devices.events import Throttle, is_known, to_json
+from vbraille.devices.events import Throttle, is_known
 from vbraille.display import Display
 from vbraille.engine.clock import ManualClock, RealClock
 from vbraille.engine.loop import Loop
 from vbraille.engine.realtime import go_real_time
 from vbraille.engine.record import RING_S, Ring
 from vbraille.errors import DeviceError, VbrailleError
-from vbraille.logs import keep, print_traceback, want_tracebacks
+from vbraille.logs import keep, print_traceback
 from vbraille.render.program import Program, nothing
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.steering import from_json
-
-if TYPE_CHECKING:
-    from vbraille.devices import Device
-    from vbraille.devices.events import Event
 
 # What a terminal does is the parent's to hear: a host that stopped with its parent would leave the
 # actuators where they are.
@@ -77,6 +73,7 @@ class Parent:
         self.descriptor = descriptor
         self.ended = False
         self.loop: Loop | None = None
+        self._throttle = Throttle()
 
     def say(self, **said: Any) -> None:
         """Send the parent a message; one that there is no room for is lost."""
@@ -97,28 +94,46 @@ class Parent:
             return
         except OSError:
             told, descriptors = b"", []
-        if not told:
+        loop = self.loop
+        if not told or loop is None:
             self.ended = True
             return
-        loop = self.loop
-        assert loop is not None
         for order, value in json.loads(told).items():
-            if order == "show":
-                loop.show(_program(descriptors[0], *value["sizes"]), value["line"])
-            elif order == "paused":
-                loop.paused = value
-            elif order == "switches":
-                loop.switches = value
-            elif order == "zero":
-                loop.device.set_zero()
-            elif order == "hand" and isinstance(loop.device, SimulatedDevice):
-                loop.device.obey(from_json(value.encode()))
+            match order:
+                case "show":
+                    loop.show(_program(descriptors[0], *value["sizes"]), value["line"])
+                case "paused":
+                    loop.paused = value
+                case "switches":
+                    loop.switches = value
+                case "zero":
+                    loop.device.set_zero()
+                case "hand" if isinstance(loop.device, SimulatedDevice):
+                    loop.device.obey(from_json(value.encode()))
+
+    def pass_on(self, now_ns: int) -> None:
+        """Tell the events of the loop and its device, not the same more than once a second.
+
+        Raises
+        ------
+        DeviceError
+            If a driver tells something that is no event.
+        """
+        assert self.loop is not None
+        for event in self.loop.take_events():
+            if not is_known(event):
+                raise DeviceError(
+                    f"{self.loop.device.display.name} tells {event!r}, which is no event of "
+                    f"vbraille.devices.events; tell the author of its driver"
+                )
+            self._throttle.add(event)
+        for event in self._throttle.take(now_ns):
+            self.say(event=event)
 
 
 def _program(descriptor: int, numbers: int, table: int) -> Program:
     """Picture in the memory of a descriptor, which is closed; nothing is copied."""
-    size = max(8 * numbers + 2 * table, 1)
-    memory = mmap.mmap(descriptor, size)
+    memory = mmap.mmap(descriptor, max(8 * numbers + 2 * table, 1))
     os.close(descriptor)
     return Program(
         np.frombuffer(memory, np.float64, numbers),
@@ -130,18 +145,11 @@ def warm_up(info: Display) -> None:
     """Load, or compile, all that a tick calls, on a device in memory and a manual clock."""
     clock = ManualClock()
     with SimulatedDevice(info, clock.now_ns) as device:
-        loop = Loop(device, clock, ring=Ring.alone(info.shape, _WARM_TICKS))
+        loop = Loop(device, clock)
         loop.show(nothing(info))
         for _ in range(_WARM_TICKS):
             loop.tick()
         loop.fade_to_rest()
-
-
-def rehearse(device: Device, rate_hz: float) -> None:
-    """Call once everything that a tick calls of a driver; the array rests meanwhile."""
-    loop = Loop(device, RealClock(), rate_hz=rate_hz)
-    for _ in range(max(2, round(_REHEARSAL_S * rate_hz))):
-        loop.tick()
 
 
 def end_after(parent: int) -> None:
@@ -161,29 +169,6 @@ def end_after(parent: int) -> None:
         signal.raise_signal(signal.SIGQUIT)
 
 
-def pass_on(loop: Loop, throttle: Throttle, parent: Parent, now_ns: int) -> None:
-    """Tell the parent the events of a loop and its device.
-
-    Raises
-    ------
-    DeviceError
-        If a driver tells something that is no event.
-    """
-    for event in loop.take_events():
-        if not is_known(event):
-            raise DeviceError(
-                f"{loop.device.display.name} tells {event!r}, which is no event of "
-                f"vbraille.devices.events; tell the author of its driver"
-            )
-        throttle.add(event)
-    for event in throttle.take(now_ns):
-        parent.say(event=_told(event))
-
-
-def _told(event: Event) -> msgspec.Raw:
-    return msgspec.Raw(to_json(event))
-
-
 def run(parent: Parent, memory: int) -> None:
     """Open the device, drive it until the parent has had enough, and bring it to rest.
 
@@ -198,8 +183,6 @@ def run(parent: Parent, memory: int) -> None:
         return
     if told["log"] is not None:
         keep(told["log"])
-    if told["verbose"]:
-        want_tracebacks()
     wanted = Display(**told["wanted"])
     parent.say(opening=True)
     with opened_device(told["device"], wanted, fits=told["fits"], often=told["often"]) as device:
@@ -214,35 +197,30 @@ def run(parent: Parent, memory: int) -> None:
         ring = Ring(memoryview(mmap.mmap(memory, size)), display.shape, ticks)
         os.close(memory)
         refused = go_real_time()
-        rehearse(device, rate_hz)
-        parent.loop = loop = Loop(
-            device,
-            RealClock(),
-            rate_hz=rate_hz,
-            ring=ring,
-            orders=(parent.descriptor, parent.obey),
-        )
+        rehearsal = Loop(device, RealClock(), rate_hz=rate_hz)  # what is first called takes longer
+        for _ in range(max(2, round(_REHEARSAL_S * rate_hz))):
+            rehearsal.tick()
+        orders = parent.descriptor, parent.obey
+        parent.loop = loop = Loop(device, RealClock(), rate_hz=rate_hz, ring=ring, orders=orders)
         signal.signal(signal.SIGTERM, lambda *_: setattr(parent, "ended", True))
         parent.say(
             ready=display,
             ticks=ticks,
-            calibration=None if found is None else found.to_json(),
+            calibration=found,
             steered=isinstance(device, SimulatedDevice),
-            event=refused and _told(refused),
+            event=refused,
         )
         _log.info("ready: %s", refused or "in real time")
-        throttle = Throttle()
         try:
             loop.restart_clock()
             while not parent.ended:
                 loop.tick()
-                pass_on(loop, throttle, parent, loop.clock.now_ns())
+                parent.pass_on(loop.clock.now_ns())
         finally:
             _log.info("ending after %d ticks", loop.tally.ticks)
-            ring.publish()
             with suppress(DeviceError):
                 loop.fade_to_rest()
-            pass_on(loop, throttle, parent, 1 << 62)
+            parent.pass_on(1 << 62)
             parent.say(counts={str(name): int(n) for name, n in device.counts().items()})
 
 

@@ -114,7 +114,7 @@ class Loop(LoopState):
             if sample.theta_rad and not device.display.turns:
                 raise self._nowhere()
         taking = device.taking
-        slot = ring.begin()
+        slot = ring.slot
         if not self.advance(times_ns, self._poses, device.rested, taking, ring.columns, slot):
             raise self._nowhere()
         if device.write(self.output):
@@ -137,7 +137,7 @@ class Loop(LoopState):
         if device.placing or not (taking and device.taking):  # a write may have brought it to rest
             held = 0 if device.taking else _HELD
             whole[slot, FLAGS] = (whole[slot, FLAGS] & ~_HELD) | held | _PLACING[device.placing]
-        ring.end()
+        ring.publish()
 
     def _even_pose(self) -> Pose | None:
         """Wait until a tick is due, and read the device."""
@@ -269,7 +269,6 @@ class LocalEngine(Loop, Watcher):
         return self._take()
 
     def _take(self) -> NDArray[np.void]:
-        self.ring.publish()
         ticks = self._reader.drain()
         self.watch(ticks, self.display)
         return ticks

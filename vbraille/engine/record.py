@@ -7,9 +7,8 @@ that compiled code serves arrays of any shape.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import IntFlag
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
@@ -92,8 +91,7 @@ def columns_of(
     return view(np.int64, INTS), view(np.float64, FLOATS), records["frame"]
 
 
-@dataclass(slots=True)
-class Tally:
+class Tally(NamedTuple):
     """Counts of what happened so far.
 
     Parameters
@@ -120,23 +118,8 @@ class Tally:
     @classmethod
     def of(cls, tick: np.void) -> Self:
         """Make a tally from a record of the ring."""
-        return cls(
-            ticks=int(tick["tick"]) + 1,
-            late=int(tick["late"]),
-            overruns=int(tick["overruns"]),
-            forward_mm=float(tick["forward_mm"]),
-            forward_s=float(tick["forward_s"]),
-        )
-
-    def __add__(self, other: Tally) -> Tally:
-        """Add two tallies."""
-        return Tally(
-            self.ticks + other.ticks,
-            self.late + other.late,
-            self.overruns + other.overruns,
-            self.forward_mm + other.forward_mm,
-            self.forward_s + other.forward_s,
-        )
+        counts = (tick[name].item() for name in cls._fields[1:])
+        return cls(int(tick["tick"]) + 1, *counts)
 
 
 _HEADER_BYTES = 64
@@ -161,18 +144,13 @@ class Ring:
         All records, as `vbraille.engine.record.columns_of` gives them, to be filled.
     integers : memoryview[size, INTS]
         Whole numbers of all records.
-    published : int64[1]
-        How many records may be read.
     """
 
     def __init__(self, buffer: memoryview, shape: tuple[int, int], size: int) -> None:
-        self.size = size
-        self.published = np.frombuffer(buffer, np.int64, 1)
         self.columns = columns_of(np.frombuffer(buffer, tick_dtype(shape), size, _HEADER_BYTES))
         self.integers = self.columns[0].data  # set one by one in half of numpy's time
-        self._buffer = buffer
-        self._shape = shape
-        self.appended = 0
+        self._published = buffer[:_HEADER_BYTES].cast("q")
+        self._of = buffer, shape, size
 
     @classmethod
     def alone(cls, shape: tuple[int, int], size: int) -> Self:
@@ -184,22 +162,18 @@ class Ring:
         """Size of the buffer, a multiple of 8."""
         return _HEADER_BYTES + size * tick_dtype(shape).itemsize
 
-    def begin(self) -> int:
-        """Begin a record: let those before it be seen, and tell the place of the new one."""
-        self.published[0] = self.appended
-        return self.appended % self.size
+    @property
+    def slot(self) -> int:
+        """Place of the record that comes next."""
+        return self._published[0] % self._of[2]
 
-    def end(self, count: int = 1) -> None:
-        """End a record, or several that were filled one after the other."""
-        self.appended += count
-
-    def publish(self) -> None:
-        """Let the last record be seen at once."""
-        self.published[0] = self.appended
+    def publish(self, count: int = 1) -> None:
+        """Let a record be seen, or several that were filled one after the other."""
+        self._published[0] += count
 
     def reader(self) -> RingReader:
         """Make a reader of the records from now on, in this process."""
-        return RingReader(self._buffer, self._shape, self.size)
+        return RingReader(*self._of)
 
 
 class RingReader:
@@ -223,23 +197,22 @@ class RingReader:
 
     def __init__(self, buffer: memoryview, shape: tuple[int, int], size: int) -> None:
         self.lost = 0
-        self._size = size
-        self._buffer, self._shape = buffer, shape
+        self._of = buffer, shape, size
         self._published = buffer[:_HEADER_BYTES].cast("q")
         self._records = np.frombuffer(buffer, tick_dtype(shape), size, _HEADER_BYTES)
         self.cursor = max(self._published[0] - 1, 0)
 
     def another(self) -> RingReader:
         """Make another reader of the same memory, which begins with the newest record."""
-        return RingReader(self._buffer, self._shape, self._size)
+        return RingReader(*self._of)
 
     def drain(self) -> NDArray[np.void]:
         """Copy the records since the last call, oldest first; `tick_dtype`[n]."""
-        end = self._published[0]
-        first = max(self.cursor, end - self._size)
-        ticks = self._records[np.arange(first, end) % self._size]
+        end, size = self._published[0], self._records.size
+        first = max(self.cursor, end - size)
+        ticks = self._records[np.arange(first, end) % size]
         # The slot after the last published one may just be written.
-        whole = min(max(first, self._published[0] + 1 - self._size), end)
+        whole = min(max(first, self._published[0] + 1 - size), end)
         self.lost += whole - self.cursor
         self.cursor = end
         return ticks[whole - first :]

@@ -1,31 +1,10 @@
-"""The figures of Lévesque 2009, as numbers and as pictures.
+"""Tactile pictures: loaded, told, checked, and drawn as maps; and the source's figures as plots.
 
-`series` computes a `FigureTable` of numbers for each picture, `draw`
-makes a figure of it. `charts` says what charts of results hold, and
-`drawcharts` draws them. `scenes` makes deflection maps of tactile pictures, `drawings` drawings of
-them, `blending` plots of their signals. `figurefiles`, `draw`, `drawcharts`, `drawings` and
-`blending` import matplotlib, and so are not imported here.
+`loading` reads a picture with all that it needs, `composing` compiles it, `index` tells what is
+under the finger, `checking` advises its author. `maps` draws pictures, `series` has the numbers of
+plots and `draw` draws them. `figurefiles`, `draw`, `drawings` and `blending` load matplotlib.
 """
 
 from vbraille.caching import keep_fonts
-from vbraille.pictures.series import (
-    FigureTable,
-    mapping,
-    page,
-    profile,
-    strain,
-    wave,
-    write_csv,
-)
 
 keep_fonts()
-
-__all__ = [
-    "FigureTable",
-    "mapping",
-    "page",
-    "profile",
-    "strain",
-    "wave",
-    "write_csv",
-]

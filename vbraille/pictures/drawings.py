@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 from typing import TYPE_CHECKING, NamedTuple
 from xml.sax.saxutils import escape
@@ -14,7 +13,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
 from vbraille.errors import InputError
-from vbraille.pictures.figurefiles import METADATA, styled, to_bytes
+from vbraille.pictures.figurefiles import styled, to_bytes
 from vbraille.pictures.scenes import grays, map_places
 from vbraille.pictures.words import plain
 from vbraille.scene.traversal import vibrations
@@ -298,25 +297,17 @@ def drawing_bytes(
         What it shows, in a word and in sentences; in an SVG screen readers say them.
     """
     title, description = plain(title), plain(description)
-    told = {"Title": title, "Description": description}
-    if kind == "png":
-        told = {key: text for key, text in told.items() if text.strip()}
-        return to_bytes(figure, kind, pixels_per_mm * MM_PER_INCH, told)
-    if kind == "svg":
-        content = to_bytes(figure, kind, told={"Title": title})
-        begin, end = content.index(b"<svg "), content.index(b">", content.index(b"<svg "))
-        named = ' role="img" aria-labelledby="title description"'
-        words = (
-            f'\n <title id="title">{escape(title)}</title>'
-            f'\n <desc id="description">{escape(description)}</desc>'
-        )
-        tag = content[begin:end] + named.encode() + b">" + words.encode()
-        return content[:begin] + tag + content[end + 1 :]
-    content = io.BytesIO()
-    with styled():
-        metadata = {"Title": title, "Subject": description, **METADATA["pdf"]}
-        figure.savefig(content, format="pdf", metadata=metadata)
-    return content.getvalue()
+    about = "Subject" if kind == "pdf" else "Description"
+    told = {key: text for key, text in (("Title", title), (about, description)) if text.strip()}
+    content = to_bytes(figure, kind, told, pixels_per_mm * MM_PER_INCH)
+    if kind != "svg":
+        return content
+    words = (
+        f' role="img" aria-labelledby="title description">\n <title id="title">{escape(title)}'
+        f'</title>\n <desc id="description">{escape(description)}</desc>'
+    )
+    end = content.index(b">", content.index(b"<svg "))
+    return content[:end] + words.encode() + content[end + 1 :]
 
 
 def _sheet(canvas: Canvas, margins_mm: tuple[float, float, float, float]) -> tuple[Figure, Axes]:

@@ -10,9 +10,9 @@ import numpy as np
 
 from vbraille.display import check_rate
 from vbraille.errors import InputError
-from vbraille.feeling.composing import compose
-from vbraille.feeling.loading import with_assets
 from vbraille.files import check_unused, whole_file
+from vbraille.pictures.composing import compose
+from vbraille.pictures.loading import with_assets
 from vbraille.pictures.scenes import small_png
 from vbraille.recording import Recording, SceneRecorded
 from vbraille.render.braille.models import STRESS2_8X8, Model, check_shown, model_of

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.feeling.loading import LoadedScene
     from vbraille.files import Content
     from vbraille.pictures.drawings import ArrayOnMap
+    from vbraille.pictures.loading import LoadedScene
     from vbraille.render import Model
     from vbraille.scene.scene import Scene
 

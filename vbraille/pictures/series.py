@@ -20,7 +20,7 @@ from vbraille.render.braille.models import STRESS2, VBD
 from vbraille.render.braille.style import Profile
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
     from typing import TextIO
 
     from numpy.typing import ArrayLike, NDArray
@@ -39,49 +39,36 @@ class FigureTable:
     Parameters
     ----------
     kind
-        Which picture it is: profile, mapping, wave, strain, page or resolution.
+        Kind of the picture: profile, mapping, wave, strain or page.
     title
-        What the picture shows, in a line.
+        Title of the picture, in a line.
     columns
         Values by name, all of one length; the names tell the units. NaN stands
         where a row has no such value.
-
-    Raises
-    ------
-    ValueError
-        If the columns differ in length.
+    panels
+        Name of the column of whose values each has a panel; empty for one panel.
     """
 
     kind: str
     title: str
     columns: dict[str, NDArray]
-
-    def __post_init__(self) -> None:
-        lengths = {name: len(values) for name, values in self.columns.items()}
-        if len(set(lengths.values())) > 1:
-            raise ValueError(f"the columns of a table differ in length: {lengths}")
+    panels: str = ""
 
     def __getitem__(self, name: str) -> NDArray:
         return self.columns[name]
-
-    def __len__(self) -> int:
-        return len(next(iter(self.columns.values()), ()))
 
     def where(self, name: str, value: object) -> FigureTable:
         """Return the rows in which a column has a value."""
         chosen = self.columns[name] == value
         return replace(self, columns={n: v[chosen] for n, v in self.columns.items()})
 
-    def rows(self) -> Iterator[tuple]:
-        """Tell the values row by row, as plain Python values."""
-        return zip(*(values.tolist() for values in self.columns.values()), strict=True)
-
 
 def write_csv(table: FigureTable, stream: TextIO) -> None:
     """Write a table, its column names first, and its numbers to the sixth decimal."""
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(table.columns)
-    writer.writerows(map(_spell, row) for row in table.rows())
+    rows = zip(*(values.tolist() for values in table.columns.values()), strict=True)
+    writer.writerows(map(_spell, row) for row in rows)
 
 
 def tuning_words(tuning: Tuning) -> str:
@@ -283,7 +270,7 @@ def mapping(
     }
     letters = to_braille(masks.tolist())
     title = f"{model.title}: {letters} on {column.rows} actuator rows{tuning_words(tuning)}"
-    return FigureTable("mapping", title, columns)
+    return FigureTable("mapping", title, columns, "method")
 
 
 def wave(model: Model) -> FigureTable:
@@ -324,30 +311,28 @@ def strain(geometry: Geometry, tuning: Tuning) -> FigureTable:
     Returns
     -------
     Table
-        ``dot_width_mm``, ``pitch_mm`` (ε), ``x_mm`` (of the left of the two; the
-        dot's left edge is at 0), ``deflection_left``, ``deflection_right`` and
-        ``strain_per_mm`` (full swings per mm; positive is expansion).
+        ``dot_width_mm``, ``x_mm`` (of the left of the two; the dot's left edge is at 0),
+        ``deflection_left``, ``deflection_right`` and ``strain_per_mm`` (full swings per mm;
+        positive is expansion).
     """
     pitch = VBD.display.column_pitch_mm
     widths = sorted({*STRAIN_WIDTHS_MM, geometry.dot_width_mm})
-    parts = []
+    parts: list[dict[str, NDArray]] = []
     for width in widths:
         x = _grid(-pitch - 0.5, max(widths) + 0.5, _step_mm(width))
-        left = _swing(x, width, VBD.style.profile, tuning)
-        right = _swing(x + pitch, width, VBD.style.profile, tuning)
-        constant = np.full(x.size, width), np.full(x.size, pitch)
-        parts.append((*constant, x, left, right, (right - left) / pitch))
-    names = (
-        "dot_width_mm",
-        "pitch_mm",
-        "x_mm",
-        "deflection_left",
-        "deflection_right",
-        "strain_per_mm",
-    )
-    joined = (np.concatenate(values) for values in zip(*parts, strict=True))
+        left, right = (_swing(at, width, VBD.style.profile, tuning) for at in (x, x + pitch))
+        parts.append(
+            {
+                "dot_width_mm": np.full(x.size, width),
+                "x_mm": x,
+                "deflection_left": left,
+                "deflection_right": right,
+                "strain_per_mm": (right - left) / pitch,
+            }
+        )
+    columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     title = f"{VBD.title}: strain between neighbours, ε = {pitch:g} mm apart{tuning_words(tuning)}"
-    return FigureTable("strain", title, dict(zip(names, joined, strict=True)))
+    return FigureTable("strain", title, columns, "dot_width_mm")
 
 
 def _swing(

@@ -111,7 +111,14 @@ def command(
 
 
 def both_ways(
-    thing: str, keys: str, nvda: str = "", also: str = "", *, first: bool = False, **how: Any
+    thing: str,
+    keys: str,
+    nvda: str = "",
+    also: str = "",
+    *,
+    name: str = "",
+    first: bool = False,
+    **how: Any,
 ) -> Callable:
     """Put two commands into the table: to the next of a thing, and to the previous.
 
@@ -121,7 +128,7 @@ def both_ways(
     def decorate(function: Callable[..., None]) -> Callable[..., None]:
         for half, (step, way) in enumerate(((1, "next"), (-1, "previous"))):
             own, other, more = (_half(each.split(), half) for each in (keys, nvda, also))
-            told = {**how, "first": first and not half, "name": f"{way}-{_named(function)}"}
+            told = {**how, "first": first and not half, "name": f"{way}-{name or _named(function)}"}
             command(f"{way} {thing}", own, other, also=more, **told)(partial(function, step=step))
         return function
 

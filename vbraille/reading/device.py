@@ -14,7 +14,6 @@ from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host, HostDiedError
 from vbraille.errors import DeviceError
 from vbraille.simulation.specs import is_simulated
-from vbraille.simulation.steering import Hold, LetGo
 
 if TYPE_CHECKING:
     import numpy as np
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
-    from vbraille.engine.record import RingReader, Tally
+    from vbraille.engine.record import Tally
     from vbraille.render import Model
     from vbraille.render.program import Program
     from vbraille.simulation.steering import HandOrder
@@ -67,6 +66,8 @@ class ReadingDevice:
         What the device waits for before it knows where its carriage is; see `set_zero`.
     held : bool
         Whether a person holds the simulated hand.
+    hand_done : bool
+        Whether a simulated hand has followed its last order; False for a person's.
     once : bool
         Whether a simulated hand is recorded, and reads no more than it has recorded.
     starts : int
@@ -84,32 +85,24 @@ class ReadingDevice:
         clock: Clock | None = None,
     ) -> None:
         self.placing = Placing.DONE
-        self.held = self._hand_done = self._simulated = False
+        self.held = self.hand_done = self._simulated = False
         self.once = hand.startswith("recorded:")
         self.starts = self._given_ns = 0
         self._wanted = wanted
         self._model: Model | None = None
         self._given = device if isinstance(device, Device) else None
         if isinstance(device, Device):
-            self.engine: Any = self._local_engine(device, clock)
+            # A host process loads the compiled code by itself.
+            from vbraille.engine.clock import RealClock
+            from vbraille.engine.loop import LocalEngine
+
+            rate_hz = min(wanted.rate_hz, device.display.rate_hz)
+            how = {"rate_hz": rate_hz, "poll_ticks": max(1, round(POLL_S * rate_hz))}
+            self.engine: Any = LocalEngine(device, clock or RealClock(), **how)
         else:
             find_driver(device)  # refused before a process is begun
             self._simulated = is_simulated(device)
             self.engine = Host(device, wanted, hand=hand, seed=seed, fits=False, often=often)
-
-    def _local_engine(self, device: Device, clock: Clock | None) -> Any:
-        """Engine that drives a device in this process."""
-        # A host process loads the compiled code by itself.
-        from vbraille.engine.clock import RealClock
-        from vbraille.engine.loop import LocalEngine
-
-        rate_hz = min(self._wanted.rate_hz, device.display.rate_hz)
-        return LocalEngine(
-            device,
-            RealClock() if clock is None else clock,
-            rate_hz=rate_hz,
-            poll_ticks=max(1, round(POLL_S * rate_hz)),
-        )
 
     def launch(self) -> None:
         """Begin the process of a simulated device, which loads while a book is opened."""
@@ -127,20 +120,18 @@ class ReadingDevice:
         return self._wanted if self._simulated else self.engine.start()
 
     def start(self, model: Model) -> None:
-        """Drive the device, for lines that are shown in the style of a model.
+        """Drive the device, or drive it again after a `HostDiedError`.
+
+        Lines are shown in the style of the model.
 
         Raises
         ------
         VbrailleError
             If the device cannot be opened.
         """
+        self.placing = Placing.DONE
         self._model = replace(model, display=self.engine.start())
         self.starts += 1
-
-    def start_again(self) -> None:
-        """Drive the device again, after a `HostDiedError`."""
-        self.placing = Placing.DONE
-        self.start(self.model)
 
     @property
     def model(self) -> Model:
@@ -212,24 +203,8 @@ class ReadingDevice:
         """Tell a simulated hand what to do; a person's hand does as it likes."""
         newest = self.engine.newest
         self._given_ns = 0 if newest is None else int(newest["device_ns"])
-        self._hand_done = False
+        self.hand_done = False
         self.engine.give(order)
-
-    def hold(self, x_mm: float, y_mm: float, theta_rad: float) -> None:
-        """Hold a simulated hand at a pose, as a person on a page of the live view does."""
-        self.engine.give(Hold(x_mm, y_mm, theta_rad))
-
-    def let_go(self) -> None:
-        """Let a hand that is held go on by itself."""
-        self.engine.give(LetGo())
-
-    def ring(self) -> RingReader:
-        """Make a reader of the records of ticks, for the live view; another after each start."""
-        return self.engine.reader()
-
-    def hand_done(self) -> bool:
-        """Tell whether a simulated hand has followed its last order; False for a person's."""
-        return self._hand_done
 
     def set_zero(self) -> None:
         """Say that the carriage is at its stop now, which `placing` may wait for."""
@@ -252,7 +227,7 @@ class ReadingDevice:
             if isinstance(event, HandHeld):
                 self.held = event.held
             elif isinstance(event, HandDone):
-                self._hand_done = event.at_ns > self._given_ns + _STALE_NS
+                self.hand_done = event.at_ns > self._given_ns + _STALE_NS
         # That its ticks may come late does not matter to a device that is not there.
         said = told([one for one in events if not (self.steered and isinstance(one, NotInTime))])
         if ticks.size:

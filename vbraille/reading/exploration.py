@@ -172,7 +172,7 @@ class Exploration:
         if key == "q":
             self._outer.done = True
         elif key == " ":
-            self._device.start_again()
+            self._device.start(self._device.model)
             self._dead = False
             self.what.steer()
             self._outer.say(self._outer.doing)

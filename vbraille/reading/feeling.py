@@ -15,18 +15,17 @@ from vbraille.translate import Book, BrailleTable, find_table
 
 if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
-    from vbraille.render import BrailleStyle
     from vbraille.render.braille.mappings import Mapping
 
 # Keys for more and less of each knob, own and NVDA's.
 _KEYS = {
-    "texture": ("t", "T", "r", "R"),
-    "contrast": ("c", "C", "c", "C"),
-    "dot_width": ("d", "D", "d", "D"),
-    "dot_spacing": ("s", "S", "s", "S"),
-    "cell_gap": ("j", "J", "j", "J"),
+    "texture": ("t T", "r R"),
+    "contrast": ("c C", ""),
+    "dot_width": ("d D", ""),
+    "dot_spacing": ("s S", ""),
+    "cell_gap": ("j J", ""),
 }
-_BAND_STEP, _BANDS = 0.1, (0.0, 1.0)  # in line pitches
+_BAND_STEP = 0.1  # in line pitches, of which it is 1 at most
 _CONTRACTED = 2  # the grade that is asked for
 
 
@@ -37,54 +36,48 @@ def _turn(reader: Reader, name: str, steps: int) -> None:
     wanted = knob.turned(value, steps)
     if wanted == value:
         reader.refuse(f"{knob.said(value)} is the {'most' if steps > 0 else 'least'}")
-    elif _tuned(reader, **{knob.field: wanted}):
-        reader.say(knob.said(wanted))
+    else:
+        _tune(reader, knob.said(wanted), **{knob.field: wanted})
 
 
-def _tuned(reader: Reader, **changes: Any) -> bool:
-    """Change the style, or say why that cannot be."""
+def _tune(reader: Reader, said: str, **changes: Any) -> None:
+    """Change the style, and say so, or why that cannot be."""
     try:
         reader.tune(**changes)
     except (InputError, ValueError) as error:
         reader.refuse(str(error))
-        return False
-    return True
+    else:
+        reader.say(said)
 
 
-def _add_knobs() -> None:
-    for name, (more, less, nvda_more, nvda_less) in _KEYS.items():
-        label = KNOBS[name].label
-        for way, step, key, nvda in (("more", 1, more, nvda_more), ("less", -1, less, nvda_less)):
-            words = {"dot_width": ("wider dots", "narrower dots")}.get(
-                name, (f"more {label}", f"less {label}")
-            )[step < 0]
-            called = f"{way}-{name.replace('_', '-')}"
-            command(words, key, nvda, name=called)(partial(_turn, name=name, steps=step))
-
-
-_add_knobs()
+for name, sets in _KEYS.items():
+    for half, (way, words) in enumerate((("more", "wider dots"), ("less", "narrower dots"))):
+        label = words if name == "dot_width" else f"{way} {KNOBS[name].label}"
+        keys, nvda = (each.split()[half] if each else "" for each in sets)
+        command(label, keys, nvda, name=f"{way}-{name.replace('_', '-')}")(
+            partial(_turn, name=name, steps=-1 if half else 1)
+        )
 
 
 @command("next dot mapping", "#", steers=True)
 def mapping(reader: Reader) -> None:
-    style = reader.style
-    found = _mappings(style, reader.device.display.rows)
-    names = [each.name for each in found]
-    here = names.index(style.mapping.name) if style.mapping.name in names else -1
-    chosen = found[(here + 1) % len(found)]
-    if _tuned(reader, mapping=chosen):
-        reader.say(mapping_said(chosen))
+    chosen = _after(reader.style.mapping, _mappings(reader))
+    _tune(reader, mapping_said(chosen), mapping=chosen)
 
 
 @command("in the live view: the next mapping beside it", "|", steers=True)
 def beside(reader: Reader) -> None:
-    found = [None, *_mappings(reader.style, reader.device.display.rows)]
-    at = found.index(reader.beside_mapping) if reader.beside_mapping in found else 0
-    reader.beside_mapping = chosen = found[(at + 1) % len(found)]
+    reader.beside_mapping = chosen = _after(reader.beside_mapping, [None, *_mappings(reader)])
     reader.say(f"beside: {'nothing' if chosen is None else mapping_said(chosen)}")
 
 
-def _mappings(style: BrailleStyle, rows: int) -> list[Mapping]:
+def _after(now: Any, found: list[Any]) -> Any:
+    """Next of a list, its first after its last."""
+    return found[(found.index(now) + 1) % len(found)] if now in found else found[0]
+
+
+def _mappings(reader: Reader) -> list[Mapping]:
+    style, rows = reader.style, reader.device.display.rows
     if style.mapping.rows == 1:
         return [single_row(row) for row in (1, 2, 3)]
     return [each for each in MAPPINGS.values() if each.rows <= rows - (style.first_row or 0)]
@@ -99,37 +92,37 @@ def mapping_said(mapping: Mapping) -> str:
 
 @command("keep the finger on its line, or show what lies under each contactor", "=")
 def straying(reader: Reader) -> None:
-    now = reader.style.straying
-    manner = "free" if now.manner == "line" else "line"
-    said = "what lies under each contactor" if manner == "free" else "the line of the finger"
-    _stray(reader, f"shown: {said}", manner=manner)
+    if reader.style.straying.manner == "line":
+        _stray(reader, "shown: what lies under each contactor", manner="free")
+    else:
+        _stray(reader, "shown: the line of the finger", manner="line")
 
 
 @command("wider band: leave a line of a page later", ")")
 def wider_band(reader: Reader) -> None:
-    _turn_band(reader, 1)
+    _turn_band(reader, _BAND_STEP)
 
 
 @command("narrower band: leave a line of a page sooner", "(")
 def narrower_band(reader: Reader) -> None:
-    _turn_band(reader, -1)
+    _turn_band(reader, -_BAND_STEP)
 
 
-def _turn_band(reader: Reader, steps: int) -> None:
-    low, high = _BANDS
+def _turn_band(reader: Reader, by: float) -> None:
     before = reader.style.straying.band
-    band = round(min(max(before + steps * _BAND_STEP, low), high), 2)
-    if band == before and reader.surface.rows:
-        reader.refuse(f"band: {band:g} line pitches is the {'most' if steps > 0 else 'least'}")
+    band = round(min(max(before + by, 0.0), 1.0), 2)
+    said = f"band: {band:g} line pitches"
+    if band == before and reader.rows:
+        reader.refuse(f"{said} is the {'most' if by > 0 else 'least'}")
     else:
-        _stray(reader, f"band: {band:g} line pitches", band=band)
+        _stray(reader, said, band=band)
 
 
 def _stray(reader: Reader, said: str, **changes: Any) -> None:
-    if not reader.surface.rows:
+    if reader.rows:
+        _tune(reader, said, straying=replace(reader.style.straying, **changes))
+    else:
         reader.refuse("only one line is shown; nothing to change")
-    elif _tuned(reader, straying=replace(reader.style.straying, **changes)):
-        reader.say(said)
 
 
 @command("undo the last tuning change", "U", steers=True)
@@ -139,11 +132,8 @@ def undo(reader: Reader) -> None:
         return
     before, now = reader.undo.pop(), reader.style
     reader.use(before)
-    said = [
-        knob.said(knob.value(before))
-        for knob in KNOBS.values()
-        if knob.value(before) != knob.value(now)
-    ]
+    values = ((knob, knob.value(before)) for knob in KNOBS.values())
+    said = [knob.said(value) for knob, value in values if value != knob.value(now)]
     if before.mapping != now.mapping:
         said.append(mapping_said(before.mapping))
     if before.straying != now.straying:
@@ -166,13 +156,13 @@ def save(reader: Reader) -> None:
 def contracted(reader: Reader) -> None:
     table = reader.book.table
     info = None if table is None else table.info
-    if table is None:
-        reader.refuse("the text is in braille already")
-    elif info is None or not info.language:
-        reader.refuse(f"table {table.name} does not say its language; y chooses one")
-    else:
+    if info is not None and info.language:
         long = info.grade.isdecimal() and int(info.grade) >= _CONTRACTED
         _translate(reader, info.language, 1 if long else _CONTRACTED)
+    elif table is not None:
+        reader.refuse(f"table {table.name} does not say its language; y chooses one")
+    else:
+        reader.refuse("the text is in braille already")
 
 
 @command("translate by the table of a language", "y")

@@ -14,8 +14,8 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.feeling.composing import compose
-from vbraille.feeling.loading import check_fits, load_scene
+from vbraille.pictures.composing import compose
+from vbraille.pictures.loading import check_fits, load_scene
 from vbraille.reading.commands import Where, both_ways, command
 from vbraille.reading.explored import Explored
 from vbraille.reading.picture import sweep
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vbraille.display import Display
-    from vbraille.feeling.loading import LoadedScene
+    from vbraille.pictures.loading import LoadedScene
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.outputs import Output
     from vbraille.render import BrailleStyle

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import base64
 from collections import deque
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,16 +28,17 @@ from vbraille.live.messages import (
 )
 from vbraille.live.states import array_shown, beside_shown, geometry_shown, line_shown, rows_shown
 from vbraille.reading.commands import Where, table
-from vbraille.reading.outputs import Cue
+from vbraille.reading.outputs import Cue, Output
+from vbraille.reading.surface import Part
+from vbraille.simulation import steering
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
-    from vbraille.feeling.loading import LoadedScene
     from vbraille.live.view import LiveView
+    from vbraille.pictures.loading import LoadedScene
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.explored import Explored
-    from vbraille.reading.surface import Part
 
 _MOST_SAID, _MOST_DRAWN = 20, 8
 _BEFORE, _AFTER = 2, 3  # lines around the one under the hand
@@ -48,7 +50,7 @@ _PLACES = {
 }
 
 
-class LiveOutput:
+class LiveOutput(Output):
     """Shows on pages of a browser what is explored, and gives what they ask as keys.
 
     Parameters
@@ -65,8 +67,7 @@ class LiveOutput:
         self._view, self._device, self._say = view, device, say
         self._last: deque[str] = deque(maxlen=_MOST_SAID)
         self._said = self._polls = 0
-        self._drawer = ThreadPoolExecutor(1)
-        self._drawn: dict[tuple[int, int], tuple[LoadedScene, Future[SceneShown]]] = {}
+        self._draw = lru_cache(_MOST_DRAWN)(partial(ThreadPoolExecutor(1).submit, _drawn))
         self._scene: SceneShown | None = None
         self._watched, self._failed = 0, False
 
@@ -75,12 +76,6 @@ class LiveOutput:
         if sentence:
             self._said += 1
             self._last.append(sentence)
-
-    def show(self, what: Explored) -> None:
-        """Do nothing: pages are told by `pressed`, whatever has changed."""
-
-    def close(self) -> None:
-        """Do nothing: the view has its own end."""
 
     def rest(self) -> None:
         """Do nothing: pages show what stands."""
@@ -91,7 +86,7 @@ class LiveOutput:
             self._say(note)
         if self._watched != self._device.starts:
             self._watched = self._device.starts
-            self._view.watch(self._device.ring())
+            self._view.watch(self._device.engine.reader())
         self._polls += 1
         if self._polls % _EVERY == 0 and not self._failed:
             try:
@@ -105,13 +100,14 @@ class LiveOutput:
     def _key(self, what: Explored, asked: Any) -> str:
         """Key for what a page asks; what is no key is done here."""
         if isinstance(asked, Point):
-            self._device.hold(asked.x_mm, asked.y_mm, asked.theta_rad)
+            self._device.engine.give(steering.Hold(asked.x_mm, asked.y_mm, asked.theta_rad))
         elif isinstance(asked, LetGo):
-            self._device.let_go()
+            self._device.engine.give(steering.LetGo())
         elif isinstance(asked, Turn):
             if asked.knob in KNOBS and what.prompt is None:
                 try:
-                    self._tell(what, what.turn(asked.knob, asked.value))
+                    if said := what.turn(asked.knob, asked.value):
+                        what.say(said)
                 except InputError as error:
                     what.refuse(str(error))
         elif asked.place is not None and what.where is Where.GAME:
@@ -120,17 +116,13 @@ class LiveOutput:
             return f"command:{asked.command}"
         return ""
 
-    def _tell(self, what: Explored, sentence: str) -> None:
-        if sentence:
-            what.say(sentence)
-
     # The state
 
     def _state(self, what: Explored) -> ViewState:
         device = self._device
         parts = {
-            Where.BOOK: self._book, Where.TUNING: self._tuning, Where.GAME: self._game,
-            Where.SCREEN: self._screen,
+            Where.BOOK: self._book, Where.TUNING: lambda tuning: self._book(tuning.reader),
+            Where.GAME: self._game, Where.SCREEN: self._screen,
         }  # fmt: skip
         made = parts.get(what.where, self._picture)(what)
         return ViewState(
@@ -146,25 +138,21 @@ class LiveOutput:
             **made,
         )
 
-    def _tuning(self, tuning: Any) -> dict[str, Any]:
-        return self._book(tuning.reader)
-
     def _book(self, reader: Any) -> dict[str, Any]:
         from vbraille.reading.feeling import mapping_said
 
-        style, surface, source = reader.style, reader.surface, reader.book.source
+        style, source = reader.style, reader.book.source
         geometry = style.geometry
         beside = None
         if reader.beside_mapping is not None:
             other = style.replace(mapping=reader.beside_mapping)
-            masks, start_mm = surface.part.masks, surface.part.start_mm
             words = mapping_said(other.mapping)
-            beside = beside_shown(other, self._device.display, masks, start_mm, words)
+            beside = beside_shown(other, self._device.display, reader.part.masks, 0.0, words)
         return {
             "title": source.title or Path(source.name).name,
             "geometry": geometry_shown(geometry),
             "rows_shown": rows_shown(style, self._device.display),
-            "lines": list(self._lines(reader)),
+            "lines": self._lines(reader),
             "place": f"{reader.named()}, {100 * reader.layout.progress(reader.line):.0f} %",
             "knobs": [
                 KnobShown(
@@ -177,34 +165,28 @@ class LiveOutput:
             "beside": beside,
             "figures": [
                 replace(self._drawing(figure, 0), top_mm=-top_mm)
-                for figure, top_mm in (reader.figures.on(surface) if surface.figured else ())
+                for figure, top_mm in (reader.figures.on(reader) if reader.figured else ())
             ],
         }  # fmt: skip
 
-    def _lines(self, reader: Any) -> Iterator[LineShown]:
+    def _lines(self, reader: Any) -> list[LineShown]:
         """Lines to be drawn, from top to bottom: the page, or the line and some around it."""
-        surface = reader.surface
-        pitch_mm, part = reader.style.geometry.line_pitch_mm, surface.part
-        if surface.rows:
-            for row, each in enumerate(surface.parts):
-                if each is not None:
-                    yield _shown(each, row * pitch_mm, under=each is part)
-            return
-        line, above = part.line, []
-        for step in range(1, _BEFORE + 1):
-            line = reader.layout.beside(line, -1)
-            if line is not None:
-                above.append(_shown(type(part)(line, part.width), -step * pitch_mm))
-            else:
-                break
-        yield from reversed(above)
-        yield _shown(part, 0.0, under=True)
-        line = part.line
-        for step in range(1, _AFTER + 1):
-            line = reader.layout.beside(line, 1)
-            if line is None:
-                return
-            yield _shown(type(part)(line, part.width), step * pitch_mm)
+        pitch_mm, part = reader.style.geometry.line_pitch_mm, reader.part
+        rows = enumerate(reader.parts)
+        if not reader.rows:
+            steps = range(-_BEFORE, _AFTER + 1)
+            near = ((step, reader.layout.beside(part.line, step)) for step in steps)
+            rows = (
+                (step, line and Part(line, part.width) if step else part) for step, line in near
+            )
+        return [
+            line_shown(
+                each.line, first=each.first, count=len(each),
+                top_mm=row * pitch_mm, number=each.line.id & _NUMBER, under=each is part,
+            )
+            for row, each in rows
+            if each is not None
+        ]  # fmt: skip
 
     def _picture(self, picture: Any) -> dict[str, Any]:
         from vbraille.pictures.scenewords import signal_words
@@ -255,7 +237,7 @@ class LiveOutput:
             "lines": [
                 LineShown(
                     row + 1, texts[row * cells : (row + 1) * cells], 0.0, row * pitch_mm,
-                    masks.tolist(), places, row == screen.surface.row,
+                    masks.tolist(), places, row == screen.row,
                 )
                 for row, masks in enumerate(screen.talk.masks)
             ],
@@ -264,30 +246,13 @@ class LiveOutput:
 
     def _drawing(self, loaded: LoadedScene, switches: int) -> SceneShown:
         """Picture from above, as its switches stand; without an image until it is drawn."""
-        key = id(loaded), switches
-        if key not in self._drawn:
-            while len(self._drawn) >= _MOST_DRAWN:
-                del self._drawn[next(iter(self._drawn))]
-            self._drawn[key] = loaded, self._drawer.submit(_drawn, loaded, switches)
-        _, drawing = self._drawn[key]
+        drawing = self._draw(loaded, switches)
         return drawing.result() if drawing.done() else _blank(loaded, "")
 
 
 def _offered(what: Explored) -> list[Any]:
     """Commands that pages offer as buttons."""
     return [one for one in table(what.where) if one.steers]
-
-
-def _shown(part: Part, top_mm: float, *, under: bool = False) -> LineShown:
-    return line_shown(
-        part.line,
-        first=part.first,
-        count=len(part),
-        start_mm=part.start_mm,
-        top_mm=top_mm,
-        number=part.line.id & _NUMBER,
-        under=under,
-    )
 
 
 def _blank(loaded: LoadedScene, image: str) -> SceneShown:
@@ -298,7 +263,7 @@ def _blank(loaded: LoadedScene, image: str) -> SceneShown:
 
 def _drawn(loaded: LoadedScene, switches: int) -> SceneShown:
     """Draw a scene as its switches have it, and the layers that they hide."""
-    from vbraille.feeling.index import label_of
+    from vbraille.pictures.index import label_of
     from vbraille.pictures.scenes import hidden_layers, small_png
     from vbraille.render.compiling import settled
 

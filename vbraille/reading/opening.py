@@ -13,7 +13,7 @@ from vbraille.errors import DeviceError, InputError
 from vbraille.layout import Layout, cells_per_line
 from vbraille.reading.device import HAND, POLL_S, ReadingDevice
 from vbraille.reading.frames import check_lines
-from vbraille.reading.outputs import Cue
+from vbraille.reading.outputs import Cue, Output
 from vbraille.reading.places import Places
 from vbraille.reading.reader import Reader
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from vbraille.render.braille.style import BrailleStyle, StyleChanges
 
 
-class _Said:
+class _Said(Output):
     """An output that calls a function with each sentence."""
 
     def __init__(self, say: Callable[[str], None]) -> None:
@@ -38,12 +38,6 @@ class _Said:
     def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:  # noqa: ARG002 - sentences only
         if sentence:
             self._say(sentence)
-
-    def show(self, what: object) -> None:
-        pass
-
-    def close(self) -> None:
-        pass
 
 
 class OpenDevice(ReadingDevice):
@@ -60,7 +54,7 @@ class OpenDevice(ReadingDevice):
 
     @property
     def reader(self) -> Reader:
-        """Reader of what is shown: `go_on` brings the next line, `go` another.
+        """Reader of what is shown: `go_on` brings the next line.
 
         Raises
         ------
@@ -143,6 +137,7 @@ class OpenDevice(ReadingDevice):
             attended=False,
             by_hand=advance,
         )
+        self._reader.begin()
 
     def read(self, text: str, **how: Any) -> Iterator[Line]:
         """Show a text, and give each line as it comes under the hand, until all are read.

@@ -12,12 +12,12 @@ import sys
 import threading
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from vbraille.wording import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable
     from pathlib import Path
 
 ECHOES = ("none", "text", "cells", "both")
@@ -49,33 +49,20 @@ MELODIES = {
 }
 
 
-class Echoed(Protocol):
-    """Part of an exploration that outputs show; see `vbraille.reading.explored.Explored`."""
-
-    @property
-    def text(self) -> str:
-        """Text under the hand, as it is spoken; empty if there is none."""
-        ...
-
-    def echoed(self, echo: str) -> Iterable[str]:
-        """Lines that are printed of what has come under the hand."""
-        ...
-
-
-class Output(Protocol):
+class Output:
     """Place where a reading is heard, seen or felt."""
 
     def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:
         """Say a sentence, with a cue or without; an empty one is a cue alone."""
 
-    def show(self, what: Echoed) -> None:
-        """Show what has come under the hand."""
+    def show(self, what: Any) -> None:
+        """Show what has come under the hand, an `explored.Explored`."""
 
     def close(self) -> None:
         """End; what was said before is finished."""
 
 
-class Console:
+class Console(Output):
     """Sentences on standard output, and lines if they are to be echoed.
 
     Parameters
@@ -93,7 +80,7 @@ class Console:
         if sentence:
             print(f"{self._clear}{printable(sentence)}", flush=True)
 
-    def show(self, what: Echoed) -> None:
+    def show(self, what: Any) -> None:
         """Print a line, as the echo says."""
         for sentence in what.echoed(self._echo):
             self.say(sentence)
@@ -108,11 +95,8 @@ class Console:
         if self._clear:
             print(flush=True)
 
-    def close(self) -> None:
-        """Do nothing."""
 
-
-class Signals:
+class Signals(Output):
     """Cues as tones of the machine's audio output or as the terminal's bell; sounds of pictures.
 
     Parameters
@@ -138,12 +122,9 @@ class Signals:
     def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:  # noqa: ARG002 - others say it
         """Give a cue."""
         if cue in MELODIES and self._tones:
-            self._player.play_melody(MELODIES[cue])
+            self._player.play(*MELODIES[cue])
         elif cue in MELODIES and sys.stderr.isatty():
             print("\a" * len(MELODIES[cue]), end="", file=sys.stderr, flush=True)
-
-    def show(self, what: Echoed) -> None:
-        """Do nothing."""
 
     def sound(self, path: Path) -> None:
         """Play a file of sound, if there is an audio output."""
@@ -152,11 +133,8 @@ class Signals:
         if self._player is not None:
             self._player.play_file(path)
 
-    def close(self) -> None:
-        """Do nothing."""
 
-
-class Speech:
+class Speech(Output):
     """Sentences and lines spoken by Speech Dispatcher, through the system's python3-speechd.
 
     New sentences take the place of those being spoken, unless they came together.
@@ -189,7 +167,7 @@ class Speech:
         """Stop what is being spoken, for something newer."""
         self._client.cancel()
 
-    def show(self, what: Echoed) -> None:
+    def show(self, what: Any) -> None:
         """Speak the text of a line."""
         self.say(what.text)
 
@@ -216,7 +194,7 @@ def system_module(name: str) -> Any:
         sys.path.remove(folder)
 
 
-class Behind:
+class Behind(Output):
     """An output in a thread of its own, opened there; one that fails says so once, and is silent.
 
     Parameters
@@ -243,7 +221,7 @@ class Behind:
         """Have a sentence said."""
         self._waiting.put(lambda output: output.say(sentence, cue))
 
-    def show(self, what: Echoed) -> None:
+    def show(self, what: Any) -> None:
         """Have the text under the hand said, as it is now."""
         text = what.text
         self._waiting.put(lambda output: output.say(text))

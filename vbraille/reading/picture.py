@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.feeling.aperture import ZOOMS, Aperture
-from vbraille.feeling.composing import compose, viewed
-from vbraille.feeling.index import SceneIndex
-from vbraille.feeling.loading import FileWatch, check_fits, load_scene
+from vbraille.pictures.aperture import ZOOMS, Aperture
+from vbraille.pictures.composing import compose, viewed
+from vbraille.pictures.index import SceneIndex
+from vbraille.pictures.loading import FileWatch, check_fits, load_scene
 from vbraille.reading.commands import Where, both_ways, command
 from vbraille.reading.explored import Explored
 from vbraille.reading.outputs import Cue
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.feeling.index import NamedElement, Spot
-    from vbraille.feeling.loading import LoadedScene
+    from vbraille.pictures.index import NamedElement, Spot
+    from vbraille.pictures.loading import LoadedScene
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.outputs import Output
     from vbraille.render.program import Program
@@ -151,7 +151,7 @@ class Picture(Explored):
     @property
     def flat(self) -> bool:
         """Tell whether the carriage goes along y, too."""
-        return self.device.display.height_mm > 0
+        return self.display.height_mm > 0
 
     @property
     def place(self) -> Point | None:
@@ -181,7 +181,7 @@ class Picture(Explored):
     def _made(self, loaded: LoadedScene, zoom: float) -> tuple[LoadedScene, Program]:
         """Picture at a zoom, with its program."""
         shown = loaded.zoomed(zoom)
-        display = self.device.display
+        display = self.display
         program = compose(shown, display, rate_hz=display.rate_hz, contrast=self._contrast)
         return shown, program
 
@@ -268,7 +268,7 @@ class Picture(Explored):
         """Note that another person holds the hand, and that a hand has gone over all."""
         if self.device.held:  # keys move the hand from where it was left
             self._aim = None
-        if self._goes and not self._attended and self.device.hand_done():
+        if self._goes and not self._attended and self.device.hand_done:
             self.done = True
 
     def _say_way(self, place: Point, now_s: float, name: str, to: Point) -> None:
@@ -309,7 +309,7 @@ class Picture(Explored):
 
     def _glide(self, to: Point, speed_mm_s: float) -> None:
         """Have a simulated hand glide to a place of the canvas."""
-        display = self.device.display
+        display = self.display
         x_mm, y_mm = self.aperture.of_carriage(*to)
         half_mm = display.span_mm / 2
         x_mm = min(max(x_mm, -half_mm), display.travel_mm - half_mm)
@@ -530,7 +530,7 @@ class Picture(Explored):
         """Read the file again, and show what it holds now; what is wrong with it is said."""
         try:
             loaded = load_scene(self.loaded.opened.path, self.device.model.style)
-            check_fits(loaded.scene, self.device.display)
+            check_fits(loaded.scene, self.display)
             made = self._made(loaded, self.aperture.zoom)
         except InputError as error:
             self.say(f"not reloaded: {error}; the picture is as it was", Cue.NOT_FOUND)

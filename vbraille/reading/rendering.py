@@ -27,11 +27,13 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.feeling.paths import PosedPath
     from vbraille.layout import Layout, Line
+    from vbraille.pictures.paths import PosedPath
     from vbraille.render import Model
     from vbraille.scene.scene import Canvas
     from vbraille.simulation.hand import Hand
+
+    Stretch = tuple[list[Line], NDArray[np.float64], NDArray[np.float64]]
 
 _BLOCK_FRAMES = 16_384
 
@@ -97,40 +99,38 @@ def render_reading(
     InputError, VbrailleError
         If the file cannot be made, or the disk cannot take it.
     """
-    style, display = model.style, model.display
+    style, display, source = model.style, model.display, layout.book.source
     count = frames = 0
     with EAR.deferred(), new_file(path, replace=replace_file) as file:
         recorder = Recorder(file, display, layout.width)
-        source = layout.book.source
-        walk = _walk(lines, model, hand, rate_hz, per_page)
-        for number, stretch in enumerate(walk):
-            if number == 0:
+        for page, along_mm, down_mm in _walk(iter(lines), model, hand, rate_hz, per_page):
+            if not count:
                 recorder.describe(
                     model=model,
                     rate_hz=rate_hz,
-                    first_line=layout.number(stretch.lines[0]),
+                    first_line=layout.number(page[0]),
                     source=source.name,
                     sha256=source.sha256(),
                 )
-            rows = [recorder.add_line(line.masks, print_of(line)) for line in stretch.lines]
-            masks = [line.masks for line in stretch.lines]
-            one = not per_page
-            program = style.render(masks[0], display) if one else style.render_page(masks, display)
-            for start in range(0, stretch.x_mm.size, _BLOCK_FRAMES):
-                x_mm = stretch.x_mm[start : start + _BLOCK_FRAMES]
+            row = min([recorder.add_line(line.masks, print_of(line)) for line in page])
+            masks = [line.masks for line in page]
+            program = (
+                style.render_page(masks, display) if per_page else style.render(masks[0], display)
+            )
+            for span in _blocks(along_mm.size):
+                x_mm, y_mm = along_mm[span], down_mm[span]
                 t_s = (frames + np.arange(x_mm.size)) / rate_hz
-                if stretch.y_mm is None:
-                    made = program.path(x_mm)
-                    recorder.add_frames(t_s, x_mm, min(rows), made, y_mm=program.own_y_mm)
-                else:
-                    y_mm = stretch.y_mm[start : start + _BLOCK_FRAMES]
+                if per_page:
                     part, made = program.poses(x_mm, y_mm)
-                    at = min(rows) + np.clip(part, 0, len(masks) - 1)
+                    at = row + np.clip(part, 0, len(page) - 1)
                     recorder.add_frames(t_s, x_mm, at, made, y_mm=y_mm, part=part)
+                else:
+                    made = program.path(x_mm)
+                    recorder.add_frames(t_s, x_mm, row, made, y_mm=program.own_y_mm)
                 frames += x_mm.size
                 EAR.heed()
-            count += len(masks)
-            done(stretch.lines[-1])
+            count += len(page)
+            done(page[-1])
     return Rendered(count, frames, frames / rate_hz)
 
 
@@ -174,8 +174,8 @@ def render_picture(
     InputError, VbrailleError
         If the picture cannot be used, the file cannot be made, or the disk cannot take it.
     """
-    from vbraille.feeling.composing import compose
-    from vbraille.feeling.loading import load_scene
+    from vbraille.pictures.composing import compose
+    from vbraille.pictures.loading import load_scene
     from vbraille.pictures.scenes import small_png
 
     display = replace(model.display, rate_hz=rate_hz)
@@ -205,81 +205,46 @@ def render_picture(
             sha256=hashlib.sha256(written).hexdigest(),
             path=hand,
         )
-        for start in range(0, frames, _BLOCK_FRAMES):
-            span = slice(start, start + _BLOCK_FRAMES)
-            t_s, x_mm, y_mm, theta_rad = (
-                values[span] for values in (way.t_s, way.x_mm, way.y_mm, way.theta_rad)
-            )
-            velocity = way.velocity_mm_s[span]
-            _, made = program.poses(x_mm, y_mm, theta_rad, t_s, velocity, going_on=start > 0)
+        for span in _blocks(frames):
+            t_s, velocity = way.t_s[span], way.velocity_mm_s[span]
+            x_mm, y_mm, theta_rad = way.x_mm[span], way.y_mm[span], way.theta_rad[span]
+            going_on = span.start > 0
+            _, made = program.poses(x_mm, y_mm, theta_rad, t_s, velocity, going_on=going_on)
             recorder.add_frames(t_s, x_mm, 0, made, y_mm=y_mm, theta_rad=theta_rad)
             EAR.heed()
-            done((start + t_s.size) / frames)
+            done((span.start + t_s.size) / frames)
     return Rendered(0, frames, frames / rate_hz), loaded.notes
 
 
-class _Stretch(NamedTuple):
-    """Lines that are shown at once, and places of the array's centre meanwhile.
-
-    Parameters
-    ----------
-    lines
-        The line, or all lines of a page.
-    x_mm : float64[n]
-        Places along the lines.
-    y_mm : float64[n] or None
-        Places down the page; None for a carriage of one axis.
-    """
-
-    lines: list[Line]
-    x_mm: NDArray[np.float64]
-    y_mm: NDArray[np.float64] | None = None
+def _blocks(count: int) -> Iterator[slice]:
+    """Spans of frames that are made and written at once."""
+    return (slice(start, start + _BLOCK_FRAMES) for start in range(0, count, _BLOCK_FRAMES))
 
 
 def _walk(
-    lines: Iterable[Line], model: Model, hand: Hand | Recorded, rate_hz: float, per_page: int
-) -> Iterator[_Stretch]:
-    """Stretches in order, with the way of the hand over each."""
-    if per_page:
-        return _walk_pages(iter(lines), model, hand, rate_hz, per_page)
-    return _walk_lines(lines, model, hand, rate_hz)
-
-
-def _walk_pages(
     lines: Iterator[Line], model: Model, hand: Hand | Recorded, rate_hz: float, per_page: int
-) -> Iterator[_Stretch]:
+) -> Iterator[Stretch]:
+    """Lines that are shown at once, and places along and down the page of the array's centre."""
     span_mm, geometry = model.display.span_mm, model.style.geometry
-    while page := list(islice(lines, per_page)):
+    x_mm = y_mm = np.zeros(0)
+    while page := list(islice(lines, per_page or 1)):
         end_mm = max(geometry.extent_mm(len(line)) for line in page)
         if isinstance(hand, Recorded):
             motion = hand.motion()
-        else:
+        elif per_page:
             motion = hand.read_page(Area(len(page), geometry.line_pitch_mm, -span_mm, end_mm))
-        at_s = np.arange(1 + math.floor(motion.duration_s * rate_hz + SLACK)) / rate_hz
-        x_mm = np.interp(at_s, motion.t_s, motion.x_mm) + span_mm / 2
-        y_mm = np.zeros(at_s.size)
-        if motion.y_mm is not None:
-            y_mm = np.interp(at_s, motion.t_s, motion.y_mm)
-        yield _Stretch(page, x_mm, y_mm)
-        if isinstance(hand, Recorded):
+        else:
+            motion = hand.read_line(-span_mm, end_mm)
+        if not (isinstance(hand, Recorded) and x_mm.size):
+            at_s = np.arange(1 + math.floor(motion.duration_s * rate_hz + SLACK)) / rate_hz
+            x_mm = np.interp(at_s, motion.t_s, motion.x_mm) + span_mm / 2  # hands move the left
+            down_mm = np.zeros(motion.t_s.size) if motion.y_mm is None else motion.y_mm
+            y_mm = np.interp(at_s, motion.t_s, down_mm)
+        end = None
+        if isinstance(hand, Recorded) and not per_page:  # it goes on from line to line
+            end = EndOfLine(span_mm, end_mm).find(x_mm)
+        stop = x_mm.size if end is None else end + 1
+        yield page, x_mm[:stop], y_mm[:stop]
+        x_mm, y_mm = x_mm[stop:], y_mm[stop:]
+        if isinstance(hand, Recorded) and not x_mm.size:
             return  # the hand has recorded no more
-
-
-def _walk_lines(
-    lines: Iterable[Line], model: Model, hand: Hand | Recorded, rate_hz: float
-) -> Iterator[_Stretch]:
-    span_mm = model.display.span_mm
-    middle_mm = span_mm / 2  # hands move the left column
-    recorded = hand.motion().sample(rate_hz) + middle_mm if isinstance(hand, Recorded) else None
-    for line in lines:
-        end_mm = model.style.geometry.extent_mm(len(line))
-        if recorded is None:
-            assert not isinstance(hand, Recorded)
-            yield _Stretch([line], hand.read_line(-span_mm, end_mm).sample(rate_hz) + middle_mm)
-            continue
-        if not recorded.size:
-            return
-        end = EndOfLine(span_mm, end_mm).find(recorded)
-        stop = recorded.size if end is None else end + 1
-        yield _Stretch([line], recorded[:stop])
-        recorded = recorded[stop:]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
@@ -27,36 +28,25 @@ def _go(reader: Reader, step: int, thing: str, said: Callable[[Block], str]) -> 
     if step < 0 and reader.line.place > here.start and not here.continues:
         number += 1  # in the middle of a heading, the one before is that heading itself
     for block in reader.book.source.blocks(number + step, step):
-        words = said(block)
+        words = "" if block.continues else said(block)
         if words:
             reader.jump(block.start, words)
             return
+    _refuse(reader, step, thing)
+
+
+def _refuse(reader: Reader, step: int, thing: str) -> None:
     reader.refuse(f"no {'next' if step > 0 else 'previous'} {thing}")
-
-
-def _begins(reader: Reader, block: Block, kind: BlockKind) -> bool:
-    """Tell whether a list, a table or a quotation begins with a block."""
-    if block.kind is not kind or block.continues:
-        return False
-    before = reader.book.source.block(block.number - 1) if block.number else None
-    if before is not None and block.group:
-        return before.group != block.group
-    return before is None or before.kind is not kind
 
 
 @both_ways(
     "paragraph", "a ctrl-down A ctrl-up", "p ctrl-down P ctrl-up", also="pins:NXPGRPH pins:PRPGRPH"
 )
 def paragraph(reader: Reader, step: int) -> None:
-    _go(reader, step, "paragraph", lambda block: _named(block) if block.words else "")
+    def said(block: Block) -> str:
+        return heading_said(block) or block.kind.value if block.words else ""
 
-
-def _named(block: Block) -> str:
-    if block.continues:
-        return ""
-    if block.kind is BlockKind.HEADING:
-        return heading_said(block)
-    return block.kind.value
+    _go(reader, step, "paragraph", said)
 
 
 @both_ways("heading", "e E", "h H", first=True)
@@ -71,35 +61,22 @@ def heading_said(block: Block, level: int | None = None) -> str:
     return f"heading level {block.heading[0]}: {block.heading[1]}"
 
 
-def _add_levels() -> None:
-    for level in range(1, 7):
-
-        @command(f"next heading of level {level}", str(level), name=f"next-heading-{level}")
-        def next_of_level(reader: Reader, level: int = level) -> None:
-            _go(reader, 1, f"heading of level {level}", lambda block: heading_said(block, level))
+def _level(reader: Reader, level: int) -> None:
+    _go(reader, 1, f"heading of level {level}", partial(heading_said, level=level))
 
 
-_add_levels()
+def _group(reader: Reader, step: int, thing: str, kind: BlockKind) -> None:
+    """Go to a list, a table or a quotation."""
 
-
-@both_ways("list", "l L")
-def list_(reader: Reader, step: int) -> None:
-    _go_to_group(reader, step, "list", BlockKind.ITEM)
-
-
-@both_ways("table", "r R", "t T")
-def table(reader: Reader, step: int) -> None:
-    _go_to_group(reader, step, "table", BlockKind.ROW)
-
-
-@both_ways("quotation", "Q alt-q", "q Q")
-def quotation(reader: Reader, step: int) -> None:
-    _go_to_group(reader, step, "quotation", BlockKind.QUOTE)
-
-
-def _go_to_group(reader: Reader, step: int, thing: str, kind: BlockKind) -> None:
     def said(block: Block) -> str:
-        return f"{thing}: {_plain(block)}" if _begins(reader, block, kind) else ""
+        before = reader.book.source.block(block.number - 1) if block.number else None
+        if block.kind is not kind:
+            return ""
+        if before is not None and (
+            before.group == block.group if block.group else before.kind is kind
+        ):
+            return ""
+        return f"{thing}: {_plain(block)}"
 
     _go(reader, step, thing, said)
 
@@ -109,26 +86,8 @@ def _plain(block: Block) -> str:
     return block.words.removeprefix("• ")
 
 
-@both_ways("item of a list", "I alt-i", "i I")
-def item(reader: Reader, step: int) -> None:
-    def said(block: Block) -> str:
-        is_item = block.kind is BlockKind.ITEM and not block.continues
-        return f"item: {_plain(block)}" if is_item else ""
-
-    _go(reader, step, "item", said)
-
-
-@both_ways("link or note", "k K", "k tab K shift-tab")
-def link(reader: Reader, step: int) -> None:
-    _go_to_mark(reader, step, _LINKS, "link or note")
-
-
-@both_ways("figure or picture", ", ;", "g G")
-def figure(reader: Reader, step: int) -> None:
-    _go_to_mark(reader, step, (MarkKind.IMAGE,), "figure or picture")
-
-
-def _go_to_mark(reader: Reader, step: int, kinds: tuple[MarkKind, ...], thing: str) -> None:
+def _mark(reader: Reader, step: int, thing: str, *kinds: MarkKind) -> None:
+    """Go to a link, a note or a figure."""
     line, place = reader.line, reader.found_here
     if place is None:
         place = line.place - 1 if step > 0 else line.place
@@ -137,7 +96,7 @@ def _go_to_mark(reader: Reader, step: int, kinds: tuple[MarkKind, ...], thing: s
             if mark.kind in kinds and (block.start + mark.start - place) * step > 0:
                 reader.jump(block.start + mark.start, _mark_said(reader, block, mark))
                 return
-    reader.refuse(f"no {'next' if step > 0 else 'previous'} {thing}")
+    _refuse(reader, step, thing)
 
 
 def _mark_said(reader: Reader, block: Block, mark: Mark) -> str:
@@ -150,62 +109,86 @@ def _mark_said(reader: Reader, block: Block, mark: Mark) -> str:
     return f"link: {words}"
 
 
+for level in range(1, 7):
+    command(f"next heading of level {level}", str(level), name=f"next-heading-{level}")(
+        partial(_level, level=level)
+    )
+for thing, kind, keys, nvda in (
+    ("list", BlockKind.ITEM, "l L", ""),
+    ("table", BlockKind.ROW, "r R", "t T"),
+    ("quotation", BlockKind.QUOTE, "Q alt-q", "q Q"),
+):
+    both_ways(thing, keys, nvda, name=thing)(partial(_group, thing=thing, kind=kind))
+
+
+@both_ways("item of a list", "I alt-i", "i I")
+def item(reader: Reader, step: int) -> None:
+    def said(block: Block) -> str:
+        return f"item: {_plain(block)}" if block.kind is BlockKind.ITEM else ""
+
+    _go(reader, step, "item", said)
+
+
+@both_ways("link or note", "k K", "k tab K shift-tab")
+def link(reader: Reader, step: int) -> None:
+    _mark(reader, step, "link or note", *_LINKS)
+
+
+@both_ways("figure or picture", ", ;", "g G")
+def figure(reader: Reader, step: int) -> None:
+    _mark(reader, step, "figure or picture", MarkKind.IMAGE)
+
+
 @command("follow the link or note under the finger; from a note, go back", "enter")
 def follow(reader: Reader) -> None:
-    line, source = reader.line, reader.book.source
-    block, place = line.block, reader.found_here
-    if place is None:
-        place = reader.place
-    ahead = [
-        mark
-        for mark in block.marks
-        if mark.kind in _LINKS
-        and block.start + mark.end > place
-        and block.start + mark.start < line.end
-    ]
-    if block.kind is BlockKind.NOTE and not (ahead and not _refers(reader, ahead[0])):
+    line, source, here = reader.line, reader.book.source, reader.found_here
+    block, place = line.block, reader.place if here is None else here
+    marks = (mark for mark in block.marks if mark.kind in _LINKS)
+    ahead = next((mark for mark in marks if block.start + mark.end > place), None)
+    if ahead is not None and block.start + ahead.start >= line.end:
+        ahead = None
+    target = "" if ahead is None else ahead.target
+    to = source.anchor(target[1:]) if target.startswith("#") else None
+    there = None if to is None else source.block_at(to)
+    leads_back = there is not None and there.kind is not BlockKind.NOTE
+    if block.kind is BlockKind.NOTE and (ahead is None or leads_back):
         _go_back(reader, block)
-    elif not ahead:
+    elif ahead is None:
         reader.refuse("no link or note here")
-    elif not ahead[0].target.startswith("#"):
-        reader.say(f"link: {ahead[0].target}")
+    elif not target.startswith("#"):
+        reader.say(f"link: {target}")
+    elif to is None or there is None:
+        reader.refuse("the link leads nowhere")
     else:
-        to = source.anchor(ahead[0].target[1:])
-        there = None if to is None else source.block_at(to)
-        if to is None or there is None:
-            reader.refuse("the link leads nowhere")
-            return
-        reader.note_from = block.start + ahead[0].start
+        reader.note_from = block.start + ahead.start
         words = there.words.strip("[] ")
         named = f"note {words}" if there.kind is BlockKind.NOTE else heading_said(there) or words
         reader.jump(to, named)
 
 
-def _refers(reader: Reader, mark: Mark) -> bool:
-    """Tell whether a mark leads back to a reference to the note that is read."""
-    to = reader.book.source.anchor(mark.target[1:]) if mark.target.startswith("#") else None
-    there = None if to is None else reader.book.source.block_at(to)
-    return there is not None and there.kind is not BlockKind.NOTE
-
-
 def _go_back(reader: Reader, note: Block) -> None:
     """Go from a note to where it was followed from, or else to a reference to it before it."""
     source = reader.book.source
+    place, reader.note_from = reader.note_from, None
     while not note.anchors and note.number and (before := source.block(note.number - 1)):
         if before.kind is not BlockKind.NOTE:
             break
         note = before
     names = {f"#{name}" for name in note.anchors}
-    from_place, reader.note_from = reader.note_from, None
-    if from_place is not None:
-        reader.jump(from_place, "back at the text")
-        return
-    for block in source.blocks(note.number - 1, -1):
-        for mark in block.marks:
-            if mark.kind is MarkKind.NOTE and mark.target in names:
-                reader.jump(block.start + mark.start, "back at the text")
-                return
-    reader.refuse("no reference to this note")
+    if place is None:
+        place = next(
+            (
+                block.start + mark.start
+                for block in source.blocks(note.number - 1, -1)
+                for mark in block.marks
+                if mark.kind is MarkKind.NOTE and mark.target in names
+            ),
+            None,
+        )
+    if place is None:
+        reader.refuse("no reference to this note")
+    else:
+        reader.jump(place, "back at the text")
 
 
 @both_ways("page", "f pagedown F pageup")
@@ -215,7 +198,8 @@ def page(reader: Reader, step: int) -> None:
         return
     at, above = divmod(reader.layout.number(reader.line) - 1, LINES_PER_PAGE)  # both from 0
     wanted = at + 1 if step > 0 else at - (not above)
-    _go_to_braille_page(reader, wanted, f"no {'next' if step > 0 else 'previous'} page")
+    if not _go_to_braille_page(reader, wanted):
+        _refuse(reader, step, "page")
 
 
 def has_pages(reader: Reader) -> bool:
@@ -225,12 +209,11 @@ def has_pages(reader: Reader) -> bool:
     return reader.has_pages
 
 
-def _go_to_braille_page(reader: Reader, number: int, missing: str) -> None:
-    line = reader.layout.line(number * LINES_PER_PAGE + 1) if number >= 0 else None
-    if line is None:
-        reader.refuse(missing)
-    else:
+def _go_to_braille_page(reader: Reader, number: int) -> bool:
+    line = reader.layout.line(number * LINES_PER_PAGE + 1)
+    if line is not None:
         reader.jump(line.place, f"page {number + 1} in braille")
+    return line is not None
 
 
 @command("go to a page, or to a percentage of the text", "g ctrl-g", "ctrl-g", first=True)
@@ -243,33 +226,35 @@ def go_to(reader: Reader) -> None:
             reader.say("cancelled")
             return
         typed.append(text)
-        _go_to(reader, text)
+        if text.endswith("%"):
+            _go_to_share(reader, text)
+        elif not _go_to_page(reader, text):
+            reader.refuse(f"no page {text}" if text.isalnum() else f"{text!r} is not a page number")
 
     reader.ask("page, or percent such as 40%", answer, typed)
 
 
-def _go_to(reader: Reader, typed: str) -> None:
-    source = reader.book.source
-    if typed.endswith("%"):
-        try:
-            share = float(typed[:-1].replace(",", ".")) / 100
-        except ValueError:
-            share = -1.0
-        if not 0 <= share <= 1:
-            reader.refuse(f"{typed!r} is not 0 to 100 percent")
-        else:
-            length = len(source.text)
-            reader.jump(min(int(share * length), max(length - 2, 0)), f"{100 * share:g} percent")
-        return
-    if has_pages(reader):
-        for block in source.blocks():
-            if block.page_number.lower() == typed.lower():
-                reader.jump(block.start, f"page {block.page_number}")
-                return
-    elif typed.isdecimal():
-        _go_to_braille_page(reader, int(typed) - 1, f"no page {typed}")
-        return
-    reader.refuse(f"no page {typed}" if typed.isalnum() else f"{typed!r} is not a page number")
+def _go_to_share(reader: Reader, typed: str) -> None:
+    try:
+        percent = float(typed[:-1].replace(",", "."))
+    except ValueError:
+        percent = -1.0
+    if 0 <= percent <= 100:
+        length = len(reader.book.source.text)
+        place = min(int(percent * length / 100), max(length - 2, 0))
+        reader.jump(place, f"{percent:g} percent")
+    else:
+        reader.refuse(f"{typed!r} is not 0 to 100 percent")
+
+
+def _go_to_page(reader: Reader, typed: str) -> bool:
+    if not has_pages(reader):
+        return typed.isdecimal() and _go_to_braille_page(reader, int(typed) - 1)
+    for block in reader.book.source.blocks():
+        if block.page_number.lower() == typed.lower():
+            reader.jump(block.start, f"page {block.page_number}")
+            return True
+    return False
 
 
 @command("list the headings, and go to one", "O", "f7", first=True)
@@ -280,9 +265,8 @@ def contents(reader: Reader) -> None:
         return
     titles = [f"{n}: {each.title}, level {each.level}" for n, each in enumerate(headings, 1)]
     top = min(each.level for each in headings)
-    few = len(headings) <= _MOST_LISTED
     for title, each in zip(titles, headings, strict=True):
-        if few or each.level == top:
+        if len(headings) <= _MOST_LISTED or each.level == top:
             reader.say(title)
 
     def answer(typed: str) -> None:
@@ -309,24 +293,20 @@ def say_headers(reader: Reader) -> None:
     if block.kind is not BlockKind.ROW:
         reader.refuse("this is not a row of a table")
         return
-    rows = (each for each in reader.book.source.blocks(block.number) if each.kind is BlockKind.ROW)
-    for row in rows:
-        if row.group != block.group:
+    for row in reader.book.source.blocks(block.number):
+        if row.kind is BlockKind.ROW and row.group != block.group:
             break
-        if any(row.headers):
-            named = "header row: " if row is not block else "headers: "
-            reader.say(f"{named}{', '.join(row.headers)}")
+        if row.kind is BlockKind.ROW and any(row.headers):
+            named = "headers" if row is block else "header row"
+            reader.say(f"{named}: {', '.join(row.headers)}")
             return
     reader.refuse("the table has no headers")
 
 
 @command("feel the figure of this line, alone", "G", "E")
 def feel_figure(reader: Reader) -> None:
-    if reader.figures is None:
-        reader.refuse("no figure here")
-        return
     try:
-        inside = reader.figures.feel(reader)
+        inside = None if reader.figures is None else reader.figures.feel(reader)
     except InputError as error:
         reader.say(f"figure not felt: {error}", Cue.NOT_FOUND)
         return

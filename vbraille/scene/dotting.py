@@ -124,11 +124,7 @@ def most_dots_of(shape: AnyPattern) -> int:
     least_mm = 2 * shape.dots.dot.radius_mm + shape.dots.separation_mm
     if isinstance(shape, Circle):
         return math.ceil(math.tau * shape.radius_mm / least_mm)
-    if isinstance(shape, PathShape):
-        contours: tuple[tuple[Point, ...], ...] = shape.contours_mm
-    else:
-        line = isinstance(shape, StraightLine)
-        contours = ((shape.start_mm, shape.end_mm) if line else shape.vertices_mm,)
+    contours, _ = shape.outline
     length_mm = sum(sum(edge_lengths_mm(contour, closed=True)) for contour in contours)
     return math.ceil(length_mm / least_mm) + sum(map(len, contours))
 

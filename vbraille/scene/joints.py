@@ -14,13 +14,14 @@ import itertools
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
+from vbraille.scene.patterns import Circle, Polygon
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vbraille.scene.measures import Point
-    from vbraille.scene.strokes import VertexMarkers
+    from vbraille.scene.patterns import Shape
+    from vbraille.scene.strokes import Along, MovingCue, VertexMarkers
     from vbraille.scene.textures import AxialGrating, TurnPeak
 
 
@@ -74,19 +75,23 @@ def joint(before_mm: Point, vertex_mm: Point, after_mm: Point, radius_mm: float)
         Radius R' that the arc would have if there were room: half of the stroke's width and the
         rounding offset.
     """
-    ux, uy, before = _towards(vertex_mm, before_mm)
-    vx, vy, after = _towards(vertex_mm, after_mm)
-    angle = math.atan2(abs(ux * vy - uy * vx), ux * vx + uy * vy)
-    inward, onward = _axes((ux, uy), (vx, vy))
-    room = min(before, after) / 2
-    tangent = math.tan(angle / 2)
+    x, y = vertex_mm
+    ux, uy = before_mm[0] - x, before_mm[1] - y
+    vx, vy = after_mm[0] - x, after_mm[1] - y
+    turn = math.atan2(ux * vy - uy * vx, ux * vx + uy * vy)  # from the edge before to that after
+    middle = math.atan2(uy, ux) + turn / 2
+    inward = (math.cos(middle), math.sin(middle))
+    side = math.copysign(1.0, turn)
+    onward = (-side * inward[1], side * inward[0])
+    room = min(math.hypot(ux, uy), math.hypot(vx, vy)) / 2
+    tangent = math.tan(abs(turn) / 2)
     if radius_mm < room * tangent:
         reach = radius_mm / tangent
     else:
         reach, radius_mm = room, room * tangent
     away = math.hypot(reach, radius_mm)
-    pivot = (vertex_mm[0] + away * inward[0], vertex_mm[1] + away * inward[1])
-    return Joint(vertex_mm, angle, reach, radius_mm, pivot, inward, onward)
+    pivot = (x + away * inward[0], y + away * inward[1])
+    return Joint(vertex_mm, abs(turn), reach, radius_mm, pivot, inward, onward)
 
 
 def joints(vertices_mm: Sequence[Point], radius_mm: float) -> tuple[Joint, ...]:
@@ -149,33 +154,6 @@ def marker_half_angle_rad(markers: VertexMarkers, angle_rad: float) -> float:
     return min(math.radians(markers.angle_deg), max(angle_rad, math.pi - angle_rad)) / 2
 
 
-def _towards(start: Point, end: Point) -> tuple[float, float, float]:
-    """Direction from one place to another, of length 1, and their distance."""
-    dx, dy = end[0] - start[0], end[1] - start[1]
-    length = math.hypot(dx, dy)
-    return dx / length, dy / length, length
-
-
-def _axes(u: Point, v: Point) -> tuple[Point, Point]:
-    """Compute the bisector of two directions, and the one at right angles, towards the second.
-
-    The longer of their sum and their difference gives the axes: the other may be hardly anything.
-    """
-    along = (u[0] + v[0], u[1] + v[1])
-    across = (v[0] - u[0], v[1] - u[1])
-    if math.hypot(*along) >= math.hypot(*across):
-        length = math.hypot(*along)
-        inward = (along[0] / length, along[1] / length)
-        onward = (-inward[1], inward[0])
-        sign = 1.0 if onward[0] * v[0] + onward[1] * v[1] >= 0 else -1.0
-        return inward, (sign * onward[0], sign * onward[1])
-    length = math.hypot(*across)
-    onward = (across[0] / length, across[1] / length)
-    inward = (-onward[1], onward[0])
-    sign = 1.0 if inward[0] * along[0] + inward[1] * along[1] >= 0 else -1.0
-    return (sign * inward[0], sign * inward[1]), onward
-
-
 TURN_DEG = 360.0
 
 
@@ -203,47 +181,43 @@ def fitted(cycle: Cycle, length: float) -> Cycle:
     return Cycle(cycle.ridge * factor, cycle.gap * factor)
 
 
-def path_lengths_mm(shape: StraightLine | Circle | Polygon | PathShape) -> tuple[float, ...]:
+def path_lengths_mm(shape: Shape) -> tuple[float, ...]:
     """Compute the length of a shape's path, or of each of a path's contours.
 
     A circle has 2πR; a polygon what is left of its edges between its corners and, if they are
     rounded, the arcs round them.
     """
-    if isinstance(shape, StraightLine):
-        return (math.dist(shape.start_mm, shape.end_mm),)
     if isinstance(shape, Circle):
         return (math.tau * shape.radius_mm,)
     if isinstance(shape, Polygon):
         return (places_along_mm(shape)[-1],)
-    return tuple(
-        sum(edge_lengths_mm(contour, closed=shape.closed)) for contour in shape.contours_mm
-    )
+    contours, closed = shape.outline
+    return tuple(sum(edge_lengths_mm(contour, closed=closed)) for contour in contours)
 
 
-def stroke_cycles(shape: StraightLine | Circle | Polygon | PathShape) -> tuple[Cycle, ...]:
+def stroke_cycles(shape: Shape) -> tuple[Cycle, ...]:
     """Compute the cycles that a texture along a shape's stroke has, one for each contour.
 
     Where the path is open, or the texture wants no whole cycles, they are as they were written.
     Without a texture along the stroke there are none.
     """
     along = None if shape.stroke is None else shape.stroke.along
-    if along is None:
-        return ()
-    cycle = Cycle(along.ridge_mm, along.gap_mm)
-    is_open = isinstance(shape, StraightLine) or (isinstance(shape, PathShape) and not shape.closed)
-    whole = along.whole_cycles and not is_open
-    return tuple(fitted(cycle, length) if whole else cycle for length in path_lengths_mm(shape))
+    return () if along is None else _along(shape, along)
 
 
-def cue_cycle(shape: StraightLine | Circle | Polygon | PathShape) -> Cycle:
+def cue_cycle(shape: Shape) -> Cycle:
     """Compute the cycle of the bands of a shape's cue."""
     cue = shape.cue
     assert cue is not None
-    cycle = Cycle(cue.ridge_mm, cue.gap_mm)
-    is_open = isinstance(shape, StraightLine) or (isinstance(shape, PathShape) and not shape.closed)
-    lengths = path_lengths_mm(shape)
-    whole = cue.whole_cycles and not is_open and len(lengths) == 1
-    return fitted(cycle, lengths[0]) if whole else cycle
+    cycle, *others = _along(shape, cue)
+    return Cycle(cue.ridge_mm, cue.gap_mm) if others else cycle
+
+
+def _along(shape: Shape, grating: Along | MovingCue) -> tuple[Cycle, ...]:
+    cycle = Cycle(grating.ridge_mm, grating.gap_mm)
+    _, closed = shape.outline
+    whole = grating.whole_cycles and closed
+    return tuple(fitted(cycle, length) if whole else cycle for length in path_lengths_mm(shape))
 
 
 def axial_cycle(grating: AxialGrating) -> Cycle:

@@ -173,19 +173,20 @@ class Shape(Pattern, frozen=True, kw_only=True):
             raise ValueError("cue needs a stroke or dots that it goes along; add one")
 
     @property
+    def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
+        """Places of each contour of its path, and whether they close; a circle has none."""
+        return (), True
+
+    @property
     def wave(self) -> RidgeWave | None:
         """Length and speed of ridges and gaps along its stroke; None if it has none."""
         return self.stroke.along.wave if self.stroke and self.stroke.along else None
 
     @property
     def flows(self) -> tuple[RidgeWave, ...]:
-        """All that flows along its path by itself, as waves; dots are no farther apart."""
-        dots, cue = self.dots, self.cue
-        found = [self.wave, None if cue is None else cue.wave]
-        if dots is not None:
-            spacing_mm = 2 * dots.dot.radius_mm + dots.separation_mm
-            found.append(RidgeWave(spacing_mm, dots.velocity_mm_s))
-        return tuple(wave for wave in found if wave is not None and wave.speed)
+        """All that flows along its path by itself, as waves."""
+        found = [self.wave, self.cue and self.cue.wave, self.dots and self.dots.wave]
+        return tuple(wave for wave in found if wave and wave.speed)
 
     @property
     def width_mm(self) -> float:
@@ -240,6 +241,11 @@ class StraightLine(Shape, frozen=True, kw_only=True, tag="line"):
         if math.dist(self.start_mm, self.end_mm) < LEAST_APART_MM:
             raise ValueError("end is where the line starts; a line needs two places")
         check_drawn(self, None)
+
+    @property
+    def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
+        """Return its two ends."""
+        return ((self.start_mm, self.end_mm),), False
 
 
 def check_points(what: str, points_mm: tuple[Point, ...], least: int, *, closed: bool) -> None:
@@ -454,6 +460,11 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
             )
         check_drawn(self, self.fill)
 
+    @property
+    def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
+        """Return its vertices."""
+        return (self.vertices_mm,), True
+
 
 class PathShape(Shape, frozen=True, kw_only=True, tag="path"):
     """Lines through many places, open or closed, one or several, as drawings have them.
@@ -487,6 +498,11 @@ class PathShape(Shape, frozen=True, kw_only=True, tag="path"):
         if self.fill is not None and not self.closed:
             raise ValueError("fill needs a closed path; write closed = true")
         check_drawn(self, self.fill)
+
+    @property
+    def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
+        """Return its contours."""
+        return self.contours_mm, self.closed
 
 
 Operation = Literal["overwrite", "multiply", "add", "weighted", "maximum", "blend"]

@@ -253,6 +253,11 @@ class Dotting(Measured, frozen=True, kw_only=True):
         super().__post_init__()
         _check_high(self.vertex_vibration, "dots")
 
+    @property
+    def wave(self) -> RidgeWave:
+        """Distance of two dots, which are no farther apart, and their speed."""
+        return RidgeWave(2 * self.dot.radius_mm + self.separation_mm, self.velocity_mm_s)
+
 
 class MovingCue(Measured, frozen=True, kw_only=True):
     """Bands that move along a shape, over what it is drawn with: Lévesque 2009, 9.3 and 9.3.2.

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
-from vbraille.scene.patterns import Circle, Group, Image, Label, PathShape, Polygon, Tile
+from vbraille.scene.patterns import Circle, Group, Image, Label, Shape, Tile
 from vbraille.scene.scene import Canvas
-from vbraille.scene.textures import Gradual, LinearGrating, Peak, RadialGrating, Uniform
-from vbraille.scene.traversal import each, placed, placed_children, with_children
+from vbraille.scene.textures import Gradual, Peak, Uniform
+from vbraille.scene.traversal import children, each, placed, with_children
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from vbraille.scene.bitmap import Bitmap
     from vbraille.scene.pattern import Pattern
@@ -70,13 +70,11 @@ def zoomed(
         If something would be too large or too small for a scene, or farther than 10 m away.
     """
     zooming = _Zooming(zoom, bitmaps or {})
-    found = {
-        number: pattern
-        for number, element in enumerate(scene.elements)
-        if (pattern := zooming.at(element, zoom)) is not None
-    }
+    shown = [(number, zooming.at(element, zoom)) for number, element in enumerate(scene.elements)]
+    found = {number: element for number, element in shown if element is not None}
     elements = tuple(found.values())
-    if zoom != 1.0 or not _are_same(elements, scene.elements):
+    same = len(elements) == len(scene.elements) and all(map(operator.is_, elements, scene.elements))
+    if zoom != 1.0 or not same:
         canvas = scene.canvas
         size = Canvas(width_mm=canvas.width_mm * zoom, height_mm=canvas.height_mm * zoom)
         scene = replace(scene, canvas=size, elements=elements)
@@ -95,10 +93,6 @@ def levels(*patterns: AnyPattern) -> list[float]:
     return sorted(zoom for zoom in found if zoom not in (None, 1.0))
 
 
-def _are_same(some: Sequence[object], others: Sequence[object]) -> bool:
-    return len(some) == len(others) and all(map(operator.is_, some, others))
-
-
 class _Zooming:
     """Patterns at one zoom, and what their images and labels were."""
 
@@ -108,68 +102,60 @@ class _Zooming:
         self._zoom, self._bitmaps = zoom, bitmaps
 
     def at(self, pattern: AnyPattern, scale: float) -> AnyPattern | None:
-        """Make a pattern whose places are multiplied; None if it is not there at the zoom."""
-        inner = self._with_parts(pattern, scale) if is_there(pattern, self._zoom) else None
-        if inner is None:
+        """Make a pattern whose places are multiplied; None if nothing of it is there."""
+        if not is_there(pattern, self._zoom):
+            return None
+        # A tile keeps its size, and so does what is in it.
+        inner = 1.0 if isinstance(pattern, Tile) else scale
+        made = with_children(pattern, lambda _, part: self.at(part, inner) or _AT_REST)
+        there = _without_rest(made)
+        if there is None:
             return None
         changes: dict[str, Any] = {}
-        if inner.zoom_from is not None or inner.zoom_to is not None:
+        if pattern.zoom_from is not None or pattern.zoom_to is not None:
             changes |= {"zoom_from": None, "zoom_to": None}
         if scale != 1.0:
-            changes |= placed(inner, lambda x, y: (x * scale, y * scale))
-            changes |= self._sizes(pattern, inner, scale)
-        shown = replace(inner, **changes) if changes else inner
+            changes |= placed(there, lambda x, y: (x * scale, y * scale))
+            sizes = self._sizes(pattern)
+            changes |= {key: size * scale for key, size in sizes.items() if size is not None}
+            distortion = getattr(there, "distortion", None)
+            if isinstance(distortion, Gradual | Peak):
+                changes["distortion"] = _longer(distortion, scale)
+        shown = replace(there, **changes) if changes else there
         if isinstance(shown, Label) and isinstance(pattern, Label):
             self.labels[shown] = pattern
         elif isinstance(shown, Image) and isinstance(pattern, Image):
             self.images[shown] = pattern
         return shown
 
-    def _with_parts(self, pattern: AnyPattern, scale: float) -> AnyPattern | None:
-        """Pattern with what stands in it; None if nothing is left of it."""
-        if isinstance(pattern, Group):
-            return self._group(pattern, scale)
-        # A tile keeps its size, and so does what is in it.
-        inner = 1.0 if isinstance(pattern, Tile) else scale
-        parts = {steps: self.at(part, inner) for steps, part in placed_children(pattern)}
-        there = {steps: part for steps, part in parts.items() if part is not None}
-        if len(there) == len(parts):
-            return with_children(pattern, lambda steps, _: there[steps])
-        # Of what stands in one pattern alone only a fill can be left out.
-        filled = isinstance(pattern, Circle | Polygon | PathShape)
-        if filled and (pattern.stroke is not None or pattern.dots is not None):
-            return replace(pattern, fill=None)
-        return None
+    def _sizes(self, pattern: AnyPattern) -> dict[str, float | None]:
+        """Fields of a pattern that are sizes of what is drawn."""
+        if isinstance(pattern, Circle):
+            return {"radius_mm": pattern.radius_mm}
+        if not isinstance(pattern, Image):
+            return {}
+        width_mm, height_mm = pattern.width_mm, pattern.height_mm
+        if width_mm is None and height_mm is None:
+            bitmap = self._bitmaps[pattern]  # which reaches beyond its place if it is blurred
+            beside, above = map(operator.sub, pattern.place_mm, bitmap.place_mm)
+            width_mm, height_mm = bitmap.width_mm - 2 * beside, bitmap.height_mm - 2 * above
+        return {"width_mm": width_mm, "height_mm": height_mm}
 
-    def _group(self, group: Group, scale: float) -> Group | None:
-        parts = [self.at(part, scale) for part in group.parts]
-        if group.operation in _LEAVES:
-            there = tuple(part for part in parts if part is not None)
-        else:
-            there = tuple(_AT_REST if part is None else part for part in parts)
-        by = None if group.by is None else self.at(group.by, scale) or _AT_REST
-        if by is group.by and _are_same(there, group.parts):
-            return group
-        return replace(group, parts=there, by=by) if there else None
 
-    def _sizes(self, pattern: AnyPattern, inner: AnyPattern, scale: float) -> dict[str, Any]:
-        """Fields of a pattern that are sizes of what is drawn, multiplied."""
-        if isinstance(inner, Circle):
-            return {"radius_mm": inner.radius_mm * scale}
-        if isinstance(inner, Image):
-            width_mm, height_mm = inner.width_mm, inner.height_mm
-            if width_mm is None and height_mm is None and isinstance(pattern, Image):
-                bitmap = self._bitmaps[pattern]  # which reaches beyond its place if it is blurred
-                beside, above = map(operator.sub, pattern.place_mm, bitmap.place_mm)
-                width_mm, height_mm = bitmap.width_mm - 2 * beside, bitmap.height_mm - 2 * above
-            sizes = {"width_mm": width_mm, "height_mm": height_mm}
-            return {name: value * scale for name, value in sizes.items() if value is not None}
-        if isinstance(inner, LinearGrating | RadialGrating):
-            match inner.distortion:
-                case Gradual() as gradual:
-                    start_mm, length_mm = gradual.start_mm * scale, gradual.length_mm * scale
-                    return {"distortion": replace(gradual, start_mm=start_mm, length_mm=length_mm)}
-                case Peak() as peak:
-                    center_mm, length_mm = peak.center_mm * scale, peak.length_mm * scale
-                    return {"distortion": replace(peak, center_mm=center_mm, length_mm=length_mm)}
-        return {}
+def _without_rest(pattern: AnyPattern) -> AnyPattern | None:
+    """Pattern without parts that are not there; None if nothing is left of it."""
+    if all(part is not _AT_REST for part in children(pattern)):
+        return pattern
+    if isinstance(pattern, Group):
+        if pattern.operation not in _LEAVES:
+            return pattern
+        parts = tuple(part for part in pattern.parts if part is not _AT_REST)
+        return replace(pattern, parts=parts) if parts else None
+    # Of what stands in one pattern alone only a fill can be left out.
+    is_drawn = isinstance(pattern, Shape) and pattern.width_mm
+    return replace(pattern, fill=None) if is_drawn else None
+
+
+def _longer(distortion: Gradual | Peak, scale: float) -> Gradual | Peak:
+    lengths = [key for key in distortion.__struct_fields__ if key.endswith("_mm")]
+    return replace(distortion, **{key: scale * getattr(distortion, key) for key in lengths})

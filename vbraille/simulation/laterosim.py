@@ -1,4 +1,4 @@
-"""A Latero made of software, at a UDP port: its boards, a hand, and what goes wrong on the way.
+"""A Latero made of software, at a UDP port: its boards and a hand.
 
 simulator = LateroSimulator(LateroCarriage(parse_hand("slow")), say=print)
 simulator.run(stopped=lambda: False)
@@ -6,20 +6,19 @@ simulator.run(stopped=lambda: False)
 
 from __future__ import annotations
 
-import heapq
-import random
 import select
 import socket
 import time
-from dataclasses import dataclass, replace
+from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from vbraille.carriers import latero
 from vbraille.devices.latero.device import DISPLAY
-from vbraille.devices.latero.wire import BUTTONS, FULLR0, PORT, VERSION, Answer, pack_answer
-from vbraille.errors import InputError, check_range
+from vbraille.devices.latero.wire import BUTTONS, PORT
+from vbraille.errors import InputError
 from vbraille.simulation.carriage import Carriage, area_of
 from vbraille.simulation.controls import Controls
 from vbraille.simulation.lateroboard import LateroBoard
@@ -60,113 +59,6 @@ class LateroCarriage(Carriage):
         return *latero.encoders_of(latero.joints_at(*self.at(now_us)), OFFSETS), 0
 
 
-@dataclass(frozen=True, slots=True)
-class LateroFaults:
-    """Faults of the network: what it does to datagrams, and what else comes along.
-
-    Parameters
-    ----------
-    drop
-        Chance of a datagram, in either direction, to be lost.
-    late, late_s
-        Chance of an answer to be late, and by how much, in seconds.
-    double
-        Chance of a datagram, in either direction, to come twice.
-    foreign
-        Chance of another sender's datagram to come with an answer.
-    seed
-        Seed of the random draws.
-
-    Raises
-    ------
-    ValueError
-        If a chance is out of range.
-    """
-
-    drop: float = 0.0
-    late: float = 0.0
-    double: float = 0.0
-    foreign: float = 0.0
-    late_s: float = 0.02
-    seed: int = 1
-
-    def __post_init__(self) -> None:
-        for name in ("drop", "late", "double", "foreign"):
-            check_range(name, getattr(self, name), 0, 1)
-
-
-@dataclass(slots=True)
-class LateroTally:
-    """Counts of datagrams that met a fault."""
-
-    requests_lost: int = 0
-    answers_lost: int = 0
-    answers_late: int = 0
-    requests_doubled: int = 0
-    answers_doubled: int = 0
-    foreign: int = 0
-
-
-class Network:
-    """Effects of a network on the datagrams of a Latero, without one.
-
-    Parameters
-    ----------
-    faults
-        Chances of what it does.
-
-    Attributes
-    ----------
-    tally : LateroTally
-        What it did.
-    """
-
-    def __init__(self, faults: LateroFaults) -> None:
-        self.tally = LateroTally()
-        self._faults = faults
-        self._random = random.Random(faults.seed)
-
-    def carry_request(self) -> int:
-        """Tell how often a request arrives: 0, 1 or 2 times."""
-        if self._meets("requests_lost", self._faults.drop):
-            return 0
-        return 1 + self._meets("requests_doubled", self._faults.double)
-
-    def carry_answer(self, answer: bytes) -> list[tuple[float, bytes]]:
-        """Return the datagrams that arrive for an answer, each with how late it is, in seconds."""
-        faults = self._faults
-        arriving = []
-        if self._meets("foreign", faults.foreign):
-            arriving.append((0.0, self._foreign(answer)))
-        if self._meets("answers_lost", faults.drop):
-            return arriving
-        late_s = faults.late_s * self._meets("answers_late", faults.late)
-        copies = 1 + self._meets("answers_doubled", faults.double)
-        return arriving + copies * [(late_s, answer)]
-
-    def _meets(self, fault: str, chance: float) -> bool:
-        """Draw whether a datagram meets a fault, and count it."""
-        met = chance > 0 and self._random.random() < chance
-        setattr(self.tally, fault, getattr(self.tally, fault) + met)
-        return met
-
-    def _foreign(self, answer: bytes) -> bytes:
-        """Return what a Latero would not answer: noise, a part, another version, a question."""
-        far = (int.from_bytes(answer[3:5]) + 0x4000) & 0xFFFF
-        draw = self._random
-        return draw.choice(
-            (
-                draw.randbytes(draw.randrange(1, 120)),
-                answer[: draw.randrange(1, len(answer))],
-                answer[:1] + bytes((VERSION + 1,)) + answer[2:],
-                answer[:2] + b"\x01" + answer[3:],
-                answer + b"\xff",
-                # The right form, and a number that no request has had for a long time.
-                pack_answer(Answer(far, 0, 0x104, 0x100, (9, 9, 9, 9)), FULLR0),
-            )
-        )
-
-
 class LateroSimulator:
     """A Latero at a UDP port of this computer, in real time.
 
@@ -178,8 +70,6 @@ class LateroSimulator:
         Function that is told what happens, a sentence at a time.
     port
         Where it listens; port 0 is any that is free.
-    faults
-        What the network does.
     script
         Presses of its two buttons, in seconds since it was first asked; the left one is 1.
     keys
@@ -192,8 +82,6 @@ class LateroSimulator:
     ----------
     board : LateroBoard
         The Latero's boards.
-    network : Network
-        What became of the datagrams.
 
     Raises
     ------
@@ -207,13 +95,11 @@ class LateroSimulator:
         *,
         say: Callable[[str], None],
         port: int = PORT,
-        faults: LateroFaults | None = None,
         script: Sequence[ControlEvent] = (),
         keys: Callable[[], Iterable[str]] = tuple,
         wait_s: float = 1.0,
     ) -> None:
         self.board = LateroBoard()
-        self.network = Network(faults or LateroFaults())
         self.carriage = carriage
         self._say = say
         self._controls, self._keys = Controls(script), keys
@@ -228,8 +114,6 @@ class LateroSimulator:
             ) from None
         self._socket.setblocking(False)
         self._begun_ns = time.monotonic_ns()
-        self._on_way: list[tuple[int, int, bytes, tuple[str, int]]] = []
-        self._count = 0
         self._asked_us: int | None = None  # when it was asked last
         self._first_us: int | None = None  # since the client came that asks now
         self._ever_us: int | None = None  # since anybody has asked
@@ -250,14 +134,8 @@ class LateroSimulator:
     def run(self, stopped: Callable[[], bool]) -> None:
         """Answer until it is told to stop."""
         while not stopped():
-            left_s = _LOOK_S
-            if self._on_way:
-                left_s = min(max(self._on_way[0][0] - self.now_us, 0) / 1e6, _LOOK_S)
-            if select.select([self._socket], (), (), left_s)[0]:
+            if select.select([self._socket], (), (), _LOOK_S)[0]:
                 self._answer()
-            while self._on_way and self._on_way[0][0] <= self.now_us:
-                _, _, answer, client = heapq.heappop(self._on_way)
-                self._send(answer, client)
             self._mind(self.now_us)
 
     def close(self) -> None:
@@ -266,24 +144,14 @@ class LateroSimulator:
 
     def _answer(self) -> None:
         """Answer what has come."""
-        try:
+        now_us = self.now_us
+        with suppress(OSError):  # nothing has come, or a client is gone that was answered
             datagram, client = self._socket.recvfrom(_ROOM_BYTES)
-        except OSError:  # nothing has come, or a client is gone that was answered
-            return
-        for _ in range(self.network.carry_request()):
-            now_us = self.now_us
             self.board.encoders = self.carriage.encoders(now_us)
             answer = self.board.receive(datagram)
-            if answer is None:
-                continue
-            self._note(client, now_us)
-            for late_s, arriving in self.network.carry_answer(answer):
-                if late_s:
-                    self._count += 1
-                    due_us = now_us + round(late_s * 1e6)
-                    heapq.heappush(self._on_way, (due_us, self._count, arriving, client))
-                else:
-                    self._send(arriving, client)
+            if answer is not None:
+                self._note(client, now_us)
+                self._socket.sendto(answer, client)
 
     def _note(self, client: tuple[str, int], now_us: int) -> None:
         """Note who has asked, and move the hand once it has waited for long enough."""
@@ -317,9 +185,3 @@ class LateroSimulator:
             self.carriage.go_back(now_us)
             if not self.board.at_rest:
                 self._say("no client asks, and blades are not at rest")
-
-    def _send(self, answer: bytes, client: tuple[str, int]) -> None:
-        try:
-            self._socket.sendto(answer, client)
-        except OSError:
-            self.network.tally.answers_lost += 1

@@ -11,8 +11,7 @@ from vbraille.errors import InputError
 from vbraille.translate.trees import Element, parse_xml
 from vbraille.wording import printable
 
-MOST_BYTES = 200_000_000  # of a member, when it is unpacked
-MOST_MARKUP = 100_000_000  # bytes of a member that is parsed
+MOST_BYTES = 100_000_000  # of a file, or of a member when it is unpacked
 _ENCRYPTED = 0x1
 # Fonts are garbled in books that are open otherwise; no text is.
 _FONTS = ("http://www.idpf.org/2008/embedding", "http://ns.adobe.com/pdf/enc#RC")
@@ -68,7 +67,7 @@ class Archive:
         member = self.find(name)
         return 0 if member is None else self._zip.getinfo(member).file_size
 
-    def read(self, name: str, most: int = MOST_BYTES) -> bytes:
+    def read(self, name: str) -> bytes:
         """Read a member.
 
         Raises
@@ -85,14 +84,14 @@ class Archive:
                 f"{self.name} is locked by a password of the zip archive; unpack it with that "
                 f"and pack it again without one"
             )
-        if info.file_size > most:
+        if info.file_size > MOST_BYTES:
             raise InputError(
                 f"{self.name} has a part {told} of {info.file_size / 1e6:.0f} MB, more than "
-                f"{most / 1e6:.0f} MB; that is no text of a book"
+                f"{MOST_BYTES / 1e6:.0f} MB; that is no text of a book"
             )
         try:
             with self._zip.open(info) as stream:  # which gives no more than it says it has
-                return stream.read(most)
+                return stream.read(MOST_BYTES)
         except _FAULTS as error:
             raise InputError(
                 f"{self.name} is damaged in its part {told} ({printable(str(error))}); get it again"
@@ -119,7 +118,7 @@ class Archive:
         """
         if not needed and self.find(name) is None:
             return Element("missing")
-        return parse_xml(self.read(name, MOST_MARKUP), f"{self.name} ({printable(name)})")
+        return parse_xml(self.read(name), f"{self.name} ({printable(name)})")
 
     def check_unlocked(self) -> None:
         """Check that a book is not locked.

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from enum import Enum
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from vbraille.braille.cells import Cells
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 
 class BlockKind(Enum):
@@ -70,6 +73,20 @@ class Mark(msgspec.Struct, frozen=True):
     start: int
     end: int
     target: str = ""
+
+
+def cut_marks(marks: Iterable[Mark], start: int, stop: int, at: int = 0) -> tuple[Mark, ...]:
+    """Marks on a part of a text, as they are where the part begins at an index."""
+    return tuple(
+        Mark(
+            mark.kind,
+            max(mark.start, start) - start + at,
+            min(mark.end, stop) - start + at,
+            mark.target,
+        )
+        for mark in marks
+        if mark.start < stop and mark.end > start
+    )
 
 
 class Block(msgspec.Struct, frozen=True, eq=False):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille.braille.cells import UNICODE_BLANK, Cells, masks_of
+from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.errors import InputError
 from vbraille.translate.blocks import Block, BlockKind
 from vbraille.translate.encodings import decode
@@ -92,8 +92,7 @@ def _lines(source: Source, text: str, dialect: dict[str, str]) -> Iterator[Block
 
 
 def _line(text: str) -> Block:
-    codes = np.frombuffer(text.encode("utf-32-le"), np.uint32)
-    return Block(text, BlockKind.LINE, cells=Cells.bare(masks_of(codes)))
+    return Block(text, BlockKind.LINE, cells=Cells.from_file(text))
 
 
 def _dialect(table: str) -> dict[str, str]:

@@ -1,161 +1,86 @@
-"""Formulas of MathML and of Word as TeX, by which readers know them."""
+"""Formulas of MathML and of Word (OMML) as TeX, by which readers know them."""
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from vbraille.translate.trees import Element
 
-_FUNCTIONS = frozenset(
-    [
-        "sin",
-        "cos",
-        "tan",
-        "cot",
-        "sec",
-        "csc",
-        "sinh",
-        "cosh",
-        "tanh",
-        "arcsin",
-        "arccos",
-        "arctan",
-        "log",
-        "ln",
-        "lg",
-        "exp",
-        "lim",
-        "max",
-        "min",
-        "sup",
-        "inf",
-        "det",
-        "dim",
-        "ker",
-        "gcd",
-        "mod",
-        "arg",
-    ]
+_FUNCTION = re.compile(
+    "(arc|)(sin|cos|tan)|(sin|cos|tan)h|cot|sec|csc|log|ln|lg|exp|lim|max|min|sup|inf|det|dim|ker"
+    "|gcd|mod|arg"
 )
 _INVISIBLE = dict.fromkeys(map(ord, "\u2061\u2062\u2063\u2064\u200b"))
 _SIGNS = {"∑": "\\sum", "∏": "\\prod", "∫": "\\int", "⋃": "\\bigcup", "⋂": "\\bigcap"}
 _ACCENTS = {"¯": "\\bar", "‾": "\\bar", "^": "\\hat", "ˆ": "\\hat", "→": "\\vec", "~": "\\tilde"}
-_NO_TEXT = ("annotation", "annotation-xml")
+_LETTERS = ("mi", "mn", "mo", "ms", "mtext", "none", "mprescripts")
+# Names in MathML and in OMML, and the TeX of their parts in order.
+_FORMS = {
+    name: form
+    for names, form in {
+        "mfrac f": "\\frac{{{0}}}{{{1}}}",
+        "msup mover sSup limUpp": "{0}^{{{1}}}",
+        "msub munder sSub limLow": "{0}_{{{1}}}",
+        "msubsup munderover sSubSup": "{0}_{{{1}}}^{{{2}}}",
+        "sPre": "{{}}_{{{0}}}^{{{1}}}{2}",
+        "nary": "{0}_{{{1}}}^{{{2}}} {3}",
+        "mroot": "\\sqrt[{1}]{{{0}}}",
+        "rad": "\\sqrt[{0}]{{{1}}}",
+        "func": "{0} {1}",
+        "bar": "\\overline{{{0}}}",
+    }.items()
+    for name in names.split()
+}
 
 
 def formula_text(math: Element) -> str:
-    """Text of a formula in MathML: what its author says of it, its TeX, or TeX of its signs."""
-    annotations = list(math.iter("annotation"))
-    in_tex = [each for each in annotations if "tex" in each.get("encoding").lower()]
-    told = math.get("alttext") or math.get("aria-label")
-    if not told.strip() and in_tex:
-        told = in_tex[0].text
-    return " ".join((told if told.strip() else _tex(math)).split())
+    """Text of a formula: what its author says of it, its TeX, or TeX of its signs."""
+    told = math.get("alttext").strip() or math.get("aria-label").strip()
+    for annotation in math.iter("annotation"):
+        if not told and "tex" in annotation.get("encoding").lower():
+            told = annotation.text
+    return " ".join((told or _tex(math)).split())
 
 
 def _tex(element: Element) -> str:
-    """TeX of an element of MathML."""
-    children = [child for child in element.elements if child.name not in _NO_TEXT]
-    match element.name:
-        case "mi" | "mn" | "mo" | "ms" | "mtext" | "none" | "mprescripts":
-            return _sign(element)
-        case "msup" | "msub" | "msubsup" | "mover" | "munder" | "munderover" if len(children) > 1:
-            return _scripts(element.name, [_tex(child) for child in children])
-        case "mfrac" if len(children) == 2:
-            return f"\\frac{{{_tex(children[0])}}}{{{_tex(children[1])}}}"
-        case "mroot" if len(children) == 2:
-            return f"\\sqrt[{_tex(children[1])}]{{{_tex(children[0])}}}"
-        case "msqrt":
-            return f"\\sqrt{{{_row(children)}}}"
-        case "mfenced":
-            opening, closing = element.get("open", "("), element.get("close", ")")
-            between = element.get("separators", ",")[:1]
-            return f"{opening}{between.join(map(_tex, children))}{closing}"
-        case "mtable":
-            return matrix([[_tex(cell) for cell in row.elements] for row in children])
-    return _row(children)
-
-
-def _row(children: list[Element]) -> str:
-    text = ""
-    for child in children:
-        part = _tex(child)
-        if child.name == "mi" and part.startswith("\\"):
-            text += f"{' ' if text[-1:].isalnum() else ''}{part} "
-        else:
-            text += part
-    return text.rstrip(" ") if not text.endswith("\\ ") else text
-
-
-def _sign(element: Element) -> str:
-    text = element.text.translate(_INVISIBLE).strip()
-    if text in _FUNCTIONS:
-        return f"\\{text}"
-    return _SIGNS.get(text, text)
-
-
-def _scripts(name: str, parts: list[str]) -> str:
-    """TeX of a base with what is above and below it."""
-    base = parts[0]
-    if name == "mover" and parts[1] in _ACCENTS:
-        return f"{_ACCENTS[parts[1]]}{{{base}}}"
-    signs = {"msup": "^", "mover": "^", "msub": "_", "munder": "_"}.get(name, "_^")
-    return base + "".join(
-        f"{sign}{{{part}}}" for sign, part in zip(signs, parts[1:], strict=False) if part
-    )
-
-
-def matrix(rows: list[list[str]]) -> str:
-    """TeX of a matrix."""
-    lines = " \\\\ ".join(" & ".join(row) for row in rows)
-    return f"\\begin{{matrix}} {lines} \\end{{matrix}}"
-
-
-# Word's own formulas (OMML), by the names of their elements and parts.
-_FORMS = {
-    "f": "\\frac{{{num}}}{{{den}}}",
-    "sSup": "{e}^{{{sup}}}",
-    "sSub": "{e}_{{{sub}}}",
-    "sSubSup": "{e}_{{{sub}}}^{{{sup}}}",
-    "sPre": "{{}}_{{{sub}}}^{{{sup}}}{e}",
-    "func": "{fName} {e}",
-    "limLow": "{e}_{{{lim}}}",
-    "limUpp": "{e}^{{{lim}}}",
-    "bar": "\\overline{{{e}}}",
-}
-_PARTS = dict.fromkeys(("num", "den", "e", "sup", "sub", "fName", "lim", "deg"), "")
-
-
-def omml_text(element: Element) -> str:
-    """TeX of a formula of Word, or of a part of one."""
-    if element.name == "t":
+    name = element.name
+    if name in _LETTERS:
+        text = element.text.translate(_INVISIBLE).strip()
+        return f"\\{text}" if _FUNCTION.fullmatch(text) else _SIGNS.get(text, text)
+    if name == "t":
         return element.text
-    inner = [child for child in element.elements if not child.name.endswith("Pr")]
-    texts = [omml_text(child) for child in inner]
-    parts = _PARTS | {child.name: text for child, text in zip(inner, texts, strict=True)}
-    sign = {
-        each.name: each.get("val") for each in element.iter("begChr", "sepChr", "endChr", "chr")
-    }
-    match element.name:
-        case "d":
-            between = sign.get("sepChr", "|").join(texts)
-            return f"{sign.get('begChr', '(')}{between}{sign.get('endChr', ')')}"
-        case "m":
-            return matrix([[omml_text(cell) for cell in row.elements] for row in inner])
-        case "eqArr":
-            return " \\\\ ".join(texts)
-        case "rad":
-            degree = f"[{parts['deg']}]" if parts["deg"] else ""
-            return f"\\sqrt{degree}{{{parts['e']}}}"
-        case "nary":
-            own = sign.get("chr", "∫")
-            return (
-                f"{_scripts('', [_SIGNS.get(own, own), parts['sub'], parts['sup']])} {parts['e']}"
-            )
-        case "acc":
-            own = sign.get("chr", "\u0302")
-            return f"{_ACCENTS[own]}{{{parts['e']}}}" if own in _ACCENTS else parts["e"] + own
-        case name if name in _FORMS:
-            return _FORMS[name].format(**parts)
-    return "".join(texts)
+    inner = [each for each in element.elements if not each.name.startswith("annotation")]
+    parts = [each for each in inner if not each.name.endswith("Pr")]
+    properties = [each for each in inner if each.name.endswith("Pr")]
+    said = {each.name: each.get("val") for holder in properties for each in holder.elements}
+    texts = [_tex(part) for part in parts]
+    if name in ("mtable", "m"):
+        rows = " \\\\ ".join(" & ".join(map(_tex, row.elements)) for row in parts)
+        return f"\\begin{{matrix}} {rows} \\end{{matrix}}"
+    if name == "eqArr":
+        return " \\\\ ".join(texts)
+    if name in ("mfenced", "d"):
+        between = said.get("sepChr", "|") if name == "d" else element.get("separators", ",")[:1]
+        opening = said.get("begChr", element.get("open", "("))
+        return opening + between.join(texts) + said.get("endChr", element.get("close", ")"))
+    accent = texts[1] if name == "mover" and len(texts) > 1 else said.get("chr", "\u0302")
+    if name in ("mover", "acc") and accent in _ACCENTS:
+        return f"{_ACCENTS[accent]}{{{''.join(texts[:1])}}}"
+    if name == "acc":
+        return "".join(texts) + accent
+    if name == "nary":
+        sign = said.get("chr", "∫")
+        texts.insert(0, _SIGNS.get(sign, sign))
+    if name in _FORMS:
+        text = _FORMS[name].format(*texts, "", "", "")
+        return text.replace("_{}", "").replace("^{}", "").replace("\\sqrt[]", "\\sqrt")
+    row = ""
+    for part, text in zip(parts, texts, strict=True):
+        if part.name == "mi" and text.startswith("\\"):
+            row += f"{' ' if row[-1:].isalnum() else ''}{text} "
+        else:
+            row += text
+    row = row.removesuffix(" ") if not row.endswith("\\ ") else row
+    return f"\\sqrt{{{row}}}" if name == "msqrt" else row

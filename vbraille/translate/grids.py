@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from vbraille.translate.blocks import Block, BlockKind, Mark, MarkKind
+from vbraille.translate.blocks import Block, BlockKind, MarkKind, cut_marks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -14,25 +13,29 @@ if TYPE_CHECKING:
     from vbraille.translate.trees import Element
 
 BETWEEN = "  "  # cells of a row
-EMPTY = (
-    "⠐⠐⠐"  # three unspaced dots 5, as the Braille Authority of North America writes an empty cell
-)
+# Three unspaced dots 5, as the Braille Authority of North America writes an empty cell.
+EMPTY = Block("⠐⠐⠐")
+EMPHASES = (MarkKind.BOLD, MarkKind.ITALIC, MarkKind.UNDERLINE)
 _MOST = 1_000  # columns or rows that one cell covers
-_EMPHASES = (MarkKind.BOLD, MarkKind.ITALIC, MarkKind.UNDERLINE)  # of a head, which has them anyway
 _LAYING_OUT = (BlockKind.HEADING, BlockKind.QUOTE, BlockKind.LINE, BlockKind.ROW, BlockKind.NOTE)
 
 
-@dataclass(slots=True)
-class _Cell:
+class _Cell(NamedTuple):
     """A cell with its text, wherever in the grid it stands."""
 
+    element: Element
     blocks: list[Block]
     whole: Block
-    is_header: bool
-    identity: str
-    named: list[str]
-    columns: int
-    rows: int
+
+    @property
+    def is_header(self) -> bool:
+        role = self.element.get("role")
+        return self.element.name == "th" or role in ("columnheader", "rowheader")
+
+    def spans(self, what: str) -> int:
+        """Number of the columns or rows that it covers, by its attribute."""
+        value = self.element.get(what).strip()
+        return min(max(int(value), 1), _MOST) if re.fullmatch(r"\d{1,6}", value) else 1
 
 
 def table_blocks(
@@ -49,52 +52,40 @@ def table_blocks(
     lays_out
         Whether the table says that it is none.
     """
-    heads, rows = [], []
-    for row, is_head in _rows(table):
-        heads.append(is_head)
-        rows.append([_cell(each, read) for each in row.elements if each.name in ("td", "th")])
+    elements = list(_rows(table))
+    rows = [
+        [_cell(each, read) for each in row.elements if each.name in ("td", "th")]
+        for row, _ in elements
+    ]
     cells = [cell for row in rows for cell in row]
     kinds = [block.kind for cell in cells for block in cell.blocks]
     if lays_out or len(cells) <= 1 or any(kind in _LAYING_OUT for kind in kinds):
         for cell in cells:
             yield from cell.blocks
         return
-    texts = {cell.identity: cell.whole.text for cell in cells if cell.identity}
+    texts = {cell.element.get("id"): cell.whole.text for cell in cells}
     headers: dict[int, str] = {}
-    for row, is_head, line in zip(rows, heads, _grid(rows), strict=True):
+    for (_, is_head), row, line in zip(elements, rows, _grid(rows), strict=True):
         yield from (b for cell in row for b in cell.blocks if b.kind is BlockKind.PAGE)
-        shown = line[:1] if len({id(cell) for cell in line}) == 1 else line
+        shown = line[:1] if len(set(map(id, line))) == 1 else line
         if not any(cell is not None and cell.whole.text for cell in shown):
             continue
         is_head = is_head or (len(row) > 1 and all(c.is_header or not c.whole.text for c in row))
-        told = [
-            " ".join(
-                texts.get(name, "")
-                for name in cell.named
-                if name in texts and name != _row_head(row)
-            )
-            if cell is not None and cell.named
-            else headers.get(column, "")
-            for column, cell in enumerate(shown)
-        ]
+        # The cell that heads a row is said with the row, and not above its cells.
+        own = row[0].element.get("id") if row and row[0].is_header else ""
+        told = []
+        for column, cell in enumerate(shown):
+            named = cell.element.get("headers").split() if cell else []
+            said = " ".join(texts[name] for name in named if name in texts and name != own)
+            told.append(said if named else headers.get(column, ""))
+        block = joined([c.whole if c and c.whole.text else EMPTY for c in shown], BETWEEN)
         if is_head:
             for column, cell in enumerate(line):
-                text = "" if cell is None else cell.whole.text
+                text = cell.whole.text if cell else ""
                 headers[column] = f"{headers.get(column, '')} {text}".strip()
-        block = joined(
-            [_EMPTY if c is None or not c.whole.text else c.whole for c in shown], BETWEEN
-        )
-        told = [] if is_head or not any(told) else told
-        marks = tuple(m for m in block.marks if not is_head or m.kind not in _EMPHASES)
-        yield block.replace(kind=BlockKind.ROW, level=0, headers=tuple(told), marks=marks)
-
-
-_EMPTY = Block(EMPTY)
-
-
-def _row_head(row: list[_Cell]) -> str:
-    """Name of the cell that heads a row, which is said with the row and not above it."""
-    return row[0].identity if row and row[0].is_header else ""
+            marks = tuple(mark for mark in block.marks if mark.kind not in EMPHASES)
+            block, told = block.replace(marks=marks), []
+        yield block.replace(kind=BlockKind.ROW, level=0, headers=tuple(told) if any(told) else ())
 
 
 def _rows(table: Element, *, is_head: bool = False) -> Iterator[tuple[Element, bool]]:
@@ -108,19 +99,8 @@ def _rows(table: Element, *, is_head: bool = False) -> Iterator[tuple[Element, b
 
 def _cell(element: Element, read: Callable[[Element], list[Block]]) -> _Cell:
     blocks = read(element)
-    return _Cell(
-        blocks,
-        joined([block for block in blocks if block.kind is not BlockKind.PAGE], " "),
-        element.name == "th" or element.get("role") in ("columnheader", "rowheader"),
-        element.get("id"),
-        element.get("headers").split(),
-        _span(element.get("colspan")),
-        _span(element.get("rowspan")),
-    )
-
-
-def _span(value: str) -> int:
-    return min(max(int(value), 1), _MOST) if re.fullmatch(r"\s*\d{1,6}\s*", value) else 1
+    whole = joined([block for block in blocks if block.kind is not BlockKind.PAGE], " ")
+    return _Cell(element, blocks, whole)
 
 
 def _grid(rows: list[list[_Cell]]) -> list[list[_Cell | None]]:
@@ -129,43 +109,41 @@ def _grid(rows: list[list[_Cell]]) -> list[list[_Cell | None]]:
     above: dict[int, tuple[_Cell, int]] = {}  # by column: a cell, and rows that it goes on for
     for row in rows:
         line: list[_Cell | None] = []
-        waiting = list(row)
-        while waiting or any(column >= len(line) for column in above):
+        waiting = iter(row)
+        following = next(waiting, None)
+        while following or any(column >= len(line) for column in above):
             column = len(line)
             if column in above:
                 cell, more = above.pop(column)
                 line.append(cell)
                 if more > 1:
                     above[column] = cell, more - 1
-                continue
-            if not waiting:
+            elif following is None:
                 line.append(None)
-                continue
-            cell = waiting.pop(0)
-            for over in range(column, column + cell.columns):
-                line.append(cell)
-                if cell.rows > 1:
-                    above[over] = cell, cell.rows - 1
+            else:
+                columns, over = following.spans("colspan"), following.spans("rowspan") - 1
+                line += [following] * columns
+                if over:
+                    above |= dict.fromkeys(range(column, column + columns), (following, over))
+                following = next(waiting, None)
         grid.append(line)
-    most = max((len(row) for row in grid if len(set(map(id, row))) > 1), default=0)
+    # A row that is one cell does not make the table wider.
+    parted = [len(set(map(id, line))) > 1 for line in grid]
+    most = max([1, *(len(line) for line, is_parted in zip(grid, parted, strict=True) if is_parted)])
     return [
-        line if len(line) >= most and len(set(map(id, line))) == 1
-        else line[: max(most, 1)] + [None] * (most - len(line))
-        for line in grid
-    ]  # fmt: skip
+        line[:most] + [None] * (most - len(line)) if is_parted or len(line) < most else line
+        for line, is_parted in zip(grid, parted, strict=True)
+    ]
 
 
-def joined(blocks: list[Block], between: str) -> Block:
-    """One block of several, with their marks and anchors."""
+def joined(blocks: list[Block], between: str, like: Block | None = None) -> Block:
+    """One block of several, with their marks and anchors; all else is that of the first."""
     if not blocks:
         return Block("")
-    text, marks, anchors = "", [], ()
+    text, marks, anchors = "", (), ()
     for block in blocks:
         text += between if text and block.text else ""
-        marks += [
-            Mark(mark.kind, mark.start + len(text), mark.end + len(text), mark.target)
-            for mark in block.marks
-        ]
+        marks += cut_marks(block.marks, 0, len(block.text), len(text))
         text += block.text
         anchors += block.anchors
-    return blocks[0].replace(text=text, marks=tuple(marks), anchors=anchors)
+    return (like or blocks[0]).replace(text=text, marks=marks, anchors=anchors)

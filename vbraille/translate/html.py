@@ -1,64 +1,552 @@
-"""HTML, XHTML and DTBook."""
+"""HTML, XHTML and DTBook, and all that is made into such a tree, as blocks."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import posixpath
+import re
+from itertools import count
+from typing import TYPE_CHECKING, Any, NamedTuple
+from urllib.parse import unquote
 
-from vbraille.errors import InputError
-from vbraille.translate.archive import MOST_MARKUP
-from vbraille.translate.markup import Walker
-from vbraille.translate.trees import Element, read_tree
+from vbraille.translate.blocks import Block, BlockKind, Mark, MarkKind, cut_marks
+from vbraille.translate.encodings import tidy
+from vbraille.translate.formulas import formula_text
+from vbraille.translate.grids import EMPHASES, joined, table_blocks
+from vbraille.translate.numbering import BULLET, list_markers
+from vbraille.translate.spellings import lowered, raised
+from vbraille.translate.trees import Element, inside, names, read_tree
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
-    from vbraille.translate.blocks import Block
     from vbraille.translate.source import Source
 
+_NAMES = names("html")
+_EMPHASES = {name: kind for kind in MarkKind if kind.value in _NAMES for name in _NAMES[kind.value]}
+_STYLES = {
+    "font-style:italic": MarkKind.ITALIC,
+    "font-weight:bold": MarkKind.BOLD,
+    "text-decoration:underline": MarkKind.UNDERLINE,
+    "vertical-align:super": MarkKind.SUPERSCRIPT,
+    "vertical-align:sub": MarkKind.SUBSCRIPT,
+}
+_SMALL = {MarkKind.SUPERSCRIPT: raised, MarkKind.SUBSCRIPT: lowered}
+_UNSHOWN = {
+    "canvas": "drawing",
+    "audio": "sound",
+    "video": "film",
+    "object": "embedded object",
+    "embed": "embedded object",
+    "iframe": "embedded page",
+    "select": "form field",
+    "textarea": "form field",
+}
+_WORD_NOTE = re.compile(r"#_(?:ftn|edn)\d+$")
+# Quotation marks of quotations and of those in them, by language; English ones elsewhere.
+_QUOTES = {"de": "„“‚‘", "fr": "«»“”", "es": "«»“”", "it": "«»“”", "ru": "«»„“", "pl": "„”«»"}
+_BLANKS = re.compile(r"[\t\r\n\f][ \t\r\n\f]*| [ \t\r\n\f]+")  # but single spaces
+_PLAIN = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
+_LONGEST_NUMBER = 6  # of a note, with its brackets
 
-def read_html(source: Source, encoding: str | None = None, *, xml: bool = False) -> Iterator[Block]:
-    """Read a page of HTML.
 
-    Raises
-    ------
-    InputError
-        If it is larger than any book.
-    """
-    content = source.stream.read(MOST_MARKUP + 1)
-    if len(content) > MOST_MARKUP:
-        raise InputError(f"{source.name} has more than {MOST_MARKUP / 1e6:.0f} MB of markup")
-    xml = xml or content[:200].lstrip().startswith(b"<?xml")
-    root, notes = read_tree(content, source.name, xml=xml, encoding=encoding)
-    for note in notes:
-        source.note(note)
+def read_html(source: Source, encoding: str | None = None) -> Iterator[Block]:
+    """Read a page of HTML, or DTBook, the markup of DAISY 3."""
+    content = source.stream.read()
+    xml = source.form == "dtbook" or content[:200].lstrip().startswith(b"<?xml")
+    root = read_tree(content, source.name, source.note, xml=xml, encoding=encoding)
     return tree_blocks(source, root)
-
-
-def read_dtbook(source: Source) -> Iterator[Block]:
-    """Read DTBook, the markup of DAISY 3."""
-    return read_html(source, xml=True)
 
 
 def tree_blocks(source: Source, root: Element) -> Iterator[Block]:
     """Blocks of a tree, which says the title and the language unless they are known."""
-    source.language = source.language or language_of(root)
-    source.title = source.title or title_of(root)
+    metas = (e.get("content") for e in root.iter("meta") if e.get("name").lower() == "dc:title")
+    tags = [element.get("lang").strip() for element in root.iter("html", "body", "dtbook", "book")]
+    source.title = (
+        source.title or root.said("title", "doctitle") or " ".join(next(metas, "").split())
+    )
+    source.language = source.language or next(filter(None, tags), "").replace("_", "-")
     return iter(Walker(source.language).read(root))
 
 
-def title_of(root: Element) -> str:
-    """Title of a page; empty if it has none."""
-    for element in root.iter("title", "doctitle"):
-        return " ".join(element.text.split())
-    for element in root.iter("meta"):
-        if element.get("name").lower() == "dc:title":
-            return " ".join(element.get("content").split())
-    return ""
+class _Role(NamedTuple):
+    """Role of the next text, by the elements around it."""
+
+    kind: BlockKind = BlockKind.PARAGRAPH
+    level: int = 0
+    group: int = 0
+    items: int = 0  # lists around it
+    quotes: int = 0
+    sections: int = 0
+    quoting: bool = False  # a quotation in the line is around it
+    language: str = ""
+    notes: bool = False  # items of lists are notes here
+    refers: bool = False  # a link is a reference to a note
+    lines: bool = False  # white space is kept
+    marker: Callable[[Element], str] = lambda _: BULLET  # what stands before an item
 
 
-def language_of(root: Element) -> str:
-    """Tag of the language of a page; empty if it does not say."""
-    for element in root.iter("html", "body", "dtbook", "book"):
-        if element.get("lang").strip():
-            return element.get("lang").strip().replace("_", "-")
-    return ""
+class Walker:
+    """Reads the blocks of a tree.
+
+    Parameters
+    ----------
+    language
+        Tag of the book's language.
+    member
+        Name of the file in the book, which stands before the names of its anchors.
+    spell
+        Function that makes the words that are added here fit the book, as cells of one in braille.
+    groups
+        Numbers of lists and tables, from 1.
+    """
+
+    def __init__(
+        self,
+        language: str = "",
+        member: str = "",
+        spell: Callable[[str], str] = str,
+        groups: Iterator[int] | None = None,
+    ) -> None:
+        self._blocks: list[Block] = []
+        self._language, self._member, self._spell = language, member, spell
+        self._groups = groups or count(1)
+        self._role = _Role()
+        self._anchors: list[str] = []
+        self._lead = ""  # what stands before the next text, as the number of an item
+        self._broken = False  # a line of stars stands before the next text
+        self._begin()
+
+    def read(self, element: Element) -> list[Block]:
+        """Read an element, and give its blocks."""
+        self._inside(element)
+        self._end()
+        return self._blocks
+
+    # The text of a block: a line feed begins a line in it, a form feed a page of print.
+
+    def _begin(self) -> None:
+        self._text: list[str] = []  # characters
+        self._blank = False  # is due before the next
+        self._marks: list[Mark] = []
+        self._pages: list[Block] = []
+
+    def _say(self, text: str) -> None:
+        """Add text of the tree, with its blanks folded."""
+        if self._role.lines:
+            self._add(text.replace("\r\n", "\n").expandtabs())
+            return
+        words = _BLANKS.sub(" ", text)
+        self._blank = self._blank or words.startswith(" ")
+        if words.strip(" "):
+            self._add(words.strip(" "))
+            self._blank = words.endswith(" ")
+
+    def _add(self, text: str) -> None:
+        """Add text as it is, after a blank if one is due."""
+        text = tidy(text).replace("\f", " ")
+        if self._next > len(self._text) and self._text[-1] not in "\n ":
+            text = f" {text}"
+        self._blank = False
+        self._text += text
+
+    def _add_apart(self, text: str, kind: MarkKind | None = None, target: str = "") -> None:
+        """Add text with blanks around it, and a mark on it."""
+        self._blank = True
+        self._add(text)
+        if kind is not None:
+            self._marks.append(Mark(kind, len(self._text) - len(text), len(self._text), target))
+        self._blank = True
+
+    def _unshown(self, what: str, label: str = "") -> None:
+        """Mark something that cannot be shown."""
+        said = self._spell(f"[{what}: {label}]" if label else f"[{what}]")
+        self._add_apart(said, MarkKind.UNSHOWN, what.split()[-1])
+
+    @property
+    def _next(self) -> int:
+        """Index at which the next text will stand."""
+        return len(self._text) + (self._blank and bool(self._text))
+
+    def _end(self) -> None:
+        """Write the block, the lines in it and the pages that begin in it."""
+        text, pages, marks, role = "".join(self._text), iter(self._pages), self._marks, self._role
+        self._begin()
+        start, written, inner = 0, False, role
+        if role.lines:
+            start = int(text.startswith("\n"))
+            text = text[start:].removesuffix("\n")
+        if not text.strip("\n ") and not (role.lines and text):
+            return
+        text = re.sub(r"\f(\S+)", "\\1\f", text)  # a page begins after a word that it cuts
+        for piece in re.split("([\n\f])", text):
+            if piece == "\f":
+                self._put(next(pages))
+            elif piece != "\n" and (piece.strip(" ") or (role.lines and written)):
+                block = _clipped(piece, start, marks, inner)
+                goes_on = written and inner is role and role.kind is not BlockKind.LINE
+                self._put(block.replace(continues=goes_on))
+                written = True
+            elif written and role.kind in (BlockKind.PARAGRAPH, BlockKind.ITEM):
+                inner = role._replace(kind=BlockKind.LINE, level=0)
+            start += len(piece)
+
+    def _put(self, block: Block) -> None:
+        last = self._blocks[-1] if self._blocks else None
+        if last is not None and last.text == block.text and _is_picture(last):
+            return  # a caption that repeats the words of its picture
+        if block.text and block.kind is not BlockKind.PAGE:
+            if self._broken and block.kind not in (BlockKind.HEADING, BlockKind.NOTE):
+                self._blocks.append(Block(self._spell("* * *")))
+            self._broken = False
+            if self._lead:
+                block = joined([Block(self._spell(self._lead)), block], "", block)
+                self._lead = ""
+                if block.kind is BlockKind.ITEM:
+                    self._become(BlockKind.PARAGRAPH)
+        if self._anchors:
+            anchors = tuple(dict.fromkeys((*self._anchors, *block.anchors)))
+            block, self._anchors = block.replace(anchors=anchors), []
+        self._blocks.append(block)
+
+    # Elements
+
+    def _become(self, kind: BlockKind | None = None, level: int = 0, **changes: Any) -> None:
+        """Change the role of the text that follows in the element."""
+        if kind is not None:
+            changes |= {"kind": kind, "level": level}
+        self._role = self._role._replace(**changes)
+
+    def _inside(self, element: Element) -> None:
+        for child in element.children:
+            if isinstance(child, str):
+                self._say(child)
+            else:
+                self._walk(child)
+
+    def _walk(self, element: Element) -> None:
+        name, words = element.name, element.words
+        is_note = bool(words & _NAMES["notes"])
+        hidden = _is_hidden(element) and not is_note and not words & _NAMES["note_lists"]
+        if hidden or name in _NAMES["skipped"] or words & _NAMES["back"]:
+            return
+        if name == "pagenum" or words & _NAMES["pages"]:
+            self._page(element)
+            return
+        before, is_block = self._role, name in _NAMES["blocks"]
+        if is_block or is_note:
+            self._end()
+        identity = element.get("id") or (element.get("name") if name == "a" else "")
+        if identity:
+            self._anchors.append(self._anchor(identity))
+        tag = element.get("lang").strip().replace("_", "-")
+        if tag and is_block:
+            self._become(language="" if _same(tag, self._language) else tag)
+        if is_note:
+            self._become(BlockKind.NOTE)
+        elif words & _NAMES["note_lists"]:
+            self._become(notes=True)
+        start = self._next
+        self._read(element, words)
+        if len(self._text) > start:
+            if tag and not is_block and not _same(tag, self._role.language or self._language):
+                self._marks.append(Mark(MarkKind.LANGUAGE, start, len(self._text), tag))
+            for kind in _emphases(element, words):
+                self._emphasise(kind, start)
+        if is_block:
+            self._end()
+        self._role, role = before, self._role
+        if before.kind is BlockKind.ITEM and role.kind is BlockKind.PARAGRAPH:
+            self._become(BlockKind.PARAGRAPH)  # the item's first block is written
+
+    def _read(self, element: Element, words: set[str]) -> None:
+        """Read an element by its name."""
+        role = self._role
+        match element.name:
+            case "br":
+                self._blank = False
+                inline = role.kind in (BlockKind.HEADING, BlockKind.ROW)
+                self._add(" " if inline else "\n")
+                return
+            case "hr":
+                self._broken = bool(self._blocks)
+            case "del" if element.text.strip():
+                self._add_apart(self._spell("[deleted:"))
+                self._inside(element)
+                self._blank = False
+                self._add(self._spell("]"))
+                self._blank = True
+                return
+            case "q":
+                language = (role.language or self._language).partition("-")[0].lower()
+                marks = _QUOTES.get(language, "“”‘’")[2 * role.quoting :]
+                self._become(quoting=not role.quoting)
+                self._surround(element, marks)
+                return
+            case "rt":
+                self._surround(element, "()")
+                return
+            case "lic" if self._text:
+                self._blank = False
+                self._add("  ")
+            case "sup":
+                self._become(refers=bool(words & _NAMES["references"]))
+            case "pre":
+                self._become(BlockKind.LINE, lines=True)
+            case "line":
+                self._become(BlockKind.LINE)
+            case "note" | "annotation":
+                self._become(BlockKind.NOTE)
+            case "blockquote" if role.kind is not BlockKind.NOTE:
+                self._become(BlockKind.QUOTE, role.quotes + 1, quotes=role.quotes + 1)
+            case "doctitle":
+                self._become(BlockKind.HEADING, 1)
+            case "hd" | "bridgehead":
+                self._become(BlockKind.HEADING, max(role.sections, 1))
+            case "ul" | "ol" | "list" | "menu" | "dl":
+                group = role.group if role.items else next(self._groups)
+                marker = list_markers(element)
+                self._become(items=role.items + 1, group=group, marker=marker)
+            case "li":
+                self._item(element)
+                return
+            case "dt" | "dd":
+                self._become(BlockKind.ITEM, max(role.items, 1) + (element.name == "dd"))
+            case "a" | "noteref" | "annoref":
+                self._link(element, words)
+                return
+            case "img":
+                self._img(element, words)
+            case "svg":
+                self._svg(element)
+                return
+            case "math":
+                self._math(element)
+                return
+            case "input":
+                self._input(element, words)
+            case "table":
+                self._table(element, words)
+                return
+            case "select" | "textarea" | "iframe" as name:
+                self._unshown(_UNSHOWN[name], _label(element))
+                return
+            case name if name in _UNSHOWN:
+                self._unshown(_UNSHOWN[name], _label(element))
+            case name if "heading" in words or re.fullmatch("h[1-6]", name):
+                self._end()
+                level = element.get("level") or element.get("aria-level") or name[1:]
+                level = int(level) if level.isdecimal() and int(level) > 0 else 2
+                self._become(BlockKind.HEADING, min(level, 9))
+                self._inside(element)
+                self._end()
+                return
+            case name if name.startswith("level"):
+                depth = int(name[5:]) if name[5:].isdecimal() else role.sections + 1
+                self._become(sections=depth)
+            case _ if "img" in words and _label(element):
+                self._add_apart(_label(element), MarkKind.IMAGE)
+                return
+        self._inside(element)
+
+    def _surround(self, element: Element, marks: str) -> None:
+        """Read an element between two marks."""
+        self._say(marks[0])
+        self._inside(element)
+        self._blank = False
+        self._say(marks[1])
+
+    def _emphasise(self, kind: MarkKind, start: int) -> None:
+        if kind in _SMALL:
+            if any(mark.kind is MarkKind.NOTE and mark.start >= start for mark in self._marks):
+                return
+            self._text[start:] = _SMALL[kind]("".join(self._text[start:]))
+        self._marks.append(Mark(kind, start, len(self._text)))
+
+    def _item(self, element: Element) -> None:
+        lead = element.attributes.get("data-marker")
+        lead = self._role.marker(element) if lead is None else lead
+        self._lead = self._lead + lead if self._lead not in ("", BULLET) else lead
+        if self._role.notes or self._role.kind is BlockKind.NOTE:
+            self._become(BlockKind.NOTE, notes=False)
+        else:
+            level = element.get("data-level") or max(self._role.items, 1)
+            self._become(BlockKind.ITEM, int(level))
+        self._inside(element)
+        self._end()
+        self._lead = ""
+
+    def _link(self, element: Element, words: set[str]) -> None:
+        address = element.get("href") or "#" + element.get("idref").lstrip("#")
+        refers = self._role.refers or bool(words & _NAMES["references"]) or element.name != "a"
+        refers = refers or _WORD_NOTE.match(address) is not None
+        start = self._next
+        self._inside(element)
+        self._marks = [
+            mark
+            for mark in self._marks
+            if mark.start < start or not (refers or mark.kind is MarkKind.UNDERLINE)
+        ]
+        told = "".join(self._text[start:])
+        if address == "#" or not told:
+            return
+        in_note = self._role.kind is BlockKind.NOTE or self._role.notes
+        if refers:  # its number stands in brackets, and not raised
+            told = told.translate(_PLAIN)
+            in_brackets = self._text[start - 1 : start] in (["["], ["("])
+            if told[0].isalnum() and not in_brackets:
+                told = f"{self._spell('[')}{told}{self._spell(']')}"
+            self._text[start:] = told
+        elif in_note and not re.search(r"\w", told):  # an arrow back to the text
+            self._text[:] = "".join(self._text[:start]).rstrip(" ")
+            return
+        elif in_note and not start and len(told) < _LONGEST_NUMBER:  # the number of the note
+            self._blank = True
+            return
+        kind = MarkKind.NOTE if refers else MarkKind.LINK
+        if self._member and (address.startswith("#") or ":" not in address):
+            address = "#" + inside(self._member, address)
+        elif address.startswith("#"):
+            address = unquote(address)
+        self._marks.append(Mark(kind, start, len(self._text), address))
+
+    def _anchor(self, name: str) -> str:
+        return f"{self._member}#{name}" if self._member else name
+
+    def _img(self, element: Element, words: set[str]) -> None:
+        path = re.split("[?#]", element.get("src"))[0].strip()
+        said = element.get("aria-label") or element.get("alt") or element.get("title")
+        said = " ".join(said.split())
+        decoration = "alt" in element.attributes and not said
+        if path.lower().endswith((".scene", ".svg")) and ":" not in path and not decoration:
+            self._end()
+            title = said or unquote(posixpath.splitext(posixpath.basename(path))[0])
+            self._become(BlockKind.LINE)
+            target = inside(self._member, path) if self._member else path
+            self._add_apart(self._spell(f"figure: {title}"), MarkKind.IMAGE, target)
+            self._end()
+        elif said:
+            self._picture(said)
+        elif not decoration and not words & {"presentation", "none"}:
+            self._unshown("picture")
+
+    def _picture(self, said: str) -> None:
+        """Words for a picture, apart from the text beside; a letter may be the first of a word."""
+        words = " ".join(said.split())
+        if len(words) > 1:
+            self._add_apart(words, MarkKind.IMAGE)
+        else:
+            self._add(words)
+            self._marks.append(Mark(MarkKind.IMAGE, len(self._text) - 1, len(self._text)))
+
+    def _svg(self, element: Element) -> None:
+        title = _label(element) or next((each.text for each in element.iter("title")), "")
+        texts = [" ".join(each.text.split()) for each in element.iter("text")]
+        pictures = [_label(picture) for picture in element.iter("image")]
+        if title.strip():
+            self._picture(title)
+        elif any(texts):
+            for text in filter(None, texts):
+                self._add_apart(text)
+        elif pictures:
+            self._unshown("picture", pictures[0])
+        else:
+            self._unshown("drawing")
+
+    def _math(self, element: Element) -> None:
+        text = formula_text(element)
+        if not text:
+            self._unshown("formula")
+        elif text[0].isalnum() or text[0] == "\\":
+            self._blank = self._blank or "".join(self._text[-1:]).isalnum()
+        self._add(text)
+
+    def _input(self, element: Element, words: set[str]) -> None:
+        kind = element.get("type").lower()
+        if kind == "image":
+            self._img(element, words)
+        elif kind == "checkbox" and "disabled" in element.attributes:
+            self._add("☒" if "checked" in element.attributes else "☐")
+            self._blank = True
+        elif kind != "hidden":
+            self._unshown("form field", _label(element) or element.get("value"))
+
+    def _table(self, element: Element, words: set[str]) -> None:
+        group = next(self._groups)
+        for caption in element.elements:
+            if caption.name == "caption":
+                self._walk(caption)
+        lays_out = bool(words & {"presentation", "none"})
+        for block in table_blocks(element, self._cell, lays_out=lays_out):
+            if block.kind is BlockKind.ROW:
+                block = block.replace(group=group, language=self._role.language)
+            self._put(block)
+
+    def _cell(self, element: Element) -> list[Block]:
+        return Walker(self._language, self._member, self._spell, self._groups).read(element)
+
+    def _page(self, element: Element) -> None:
+        """A page of print begins."""
+        told = element.get("title") or element.get("aria-label") or element.text
+        told = re.sub(r"^page\s+", "", " ".join(told.split()), flags=re.I).strip(" .")
+        anchors = (self._anchor(element.get("id")),) if element.get("id") else ()
+        page = Block(told, BlockKind.PAGE, anchors=anchors)
+        if self._text:
+            self._pages.append(page)
+            self._text.append("\f")
+        else:
+            self._put(page)
+
+
+def _emphases(element: Element, words: set[str]) -> list[MarkKind]:
+    """Kinds of emphasis that an element gives its text."""
+    named = [element.name]
+    if element.name == "span":
+        named += [word for word in words if word.startswith(("sub", "sup"))]
+    style = element.get("style").lower().replace(" ", "")
+    kinds = [_EMPHASES[name] for name in named if name in _EMPHASES]
+    return kinds + [kind for css, kind in _STYLES.items() if css in style]
+
+
+def _clipped(text: str, start: int, marks: list[Mark], role: _Role) -> Block:
+    """Block of a part of a text, with what is marked in that part.
+
+    Emphasis that all of a heading or of a quotation has is what it looks like, and left out.
+    """
+    body = text if role.lines else text.strip(" ")
+    start += text.index(body)
+    language, kept = role.language, []
+    for mark in cut_marks(marks, start, start + len(body)):
+        is_whole = (mark.start, mark.end) == (0, len(body))
+        if mark.kind is MarkKind.LANGUAGE and is_whole:
+            language = mark.target
+        elif not (is_whole and mark.kind in EMPHASES and role.kind in _EMPHATIC):
+            kept.append(mark)
+    kept = [mark for mark in kept if mark.kind is not MarkKind.LANGUAGE or mark.target != language]
+    kept.sort(key=lambda mark: (mark.start, -mark.end))
+    return Block(body, role.kind, role.level, None, tuple(kept), language, group=role.group)
+
+
+_EMPHATIC = (BlockKind.HEADING, BlockKind.QUOTE)
+
+
+def _is_picture(block: Block) -> bool:
+    """Tell whether a block is the words of a picture and nothing else."""
+    marks = [(mark.kind, mark.start, mark.end) for mark in block.marks]
+    return (MarkKind.IMAGE, 0, len(block.text)) in marks and block.text != ""
+
+
+def _label(element: Element) -> str:
+    return " ".join((element.get("aria-label") or element.get("title")).split())
+
+
+def _same(one: str, other: str) -> bool:
+    """Tell whether two tags are of one language, or the first of none."""
+    one, other = one.lower(), other.lower()
+    related = one.startswith(f"{other}-") or other.startswith(f"{one}-")
+    return one == other or related or one in ("und", "zxx")
+
+
+def _is_hidden(element: Element) -> bool:
+    style = element.get("style").lower().replace(" ", "")
+    said = "hidden" in element.attributes or element.get("aria-hidden") == "true"
+    return said or "display:none" in style or "visibility:hidden" in style

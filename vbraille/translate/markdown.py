@@ -6,9 +6,7 @@ import re
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from vbraille.errors import InputError
-from vbraille.translate.archive import MOST_MARKUP
-from vbraille.translate.encodings import decode
+from vbraille.translate.encodings import read_text_of
 from vbraille.translate.html import tree_blocks
 from vbraille.translate.trees import read_tree
 
@@ -49,12 +47,7 @@ def read_markdown(source: Source, encoding: str | None = None) -> Iterator[Block
     from mdit_py_plugins.subscript import sub_plugin
     from mdit_py_plugins.superscript import superscript_plugin
 
-    content = source.stream.read(MOST_MARKUP + 1)
-    if len(content) > MOST_MARKUP:
-        raise InputError(f"{source.name} has more than {MOST_MARKUP / 1e6:.0f} MB")
-    text, _, note = decode(content, encoding)
-    if note:
-        source.note(f"{source.name} {note}")
+    text = read_text_of(source, encoding)
     parser = MarkdownIt("commonmark", {"maxNesting": _LIMIT}).enable(["table", "strikethrough"])
     parser.block.ruler.before("table", "deepest", _deepest)
     parser.add_render_rule("image", _image)
@@ -70,10 +63,8 @@ def read_markdown(source: Source, encoding: str | None = None) -> Iterator[Block
         if token.type == "front_matter":
             _read_front(source, token.content)
     html = parser.renderer.render(tokens, parser.options, {})
-    root, notes = read_tree(html.encode("utf-8", "replace"), source.name, xml=False)
-    for note in notes:
-        source.note(note)
-    return tree_blocks(source, root)
+    content = html.encode("utf-8", "replace")
+    return tree_blocks(source, read_tree(content, source.name, source.note, xml=False))
 
 
 def _read_front(source: Source, front: str) -> None:

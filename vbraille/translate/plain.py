@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from vbraille.translate.blocks import Block, BlockKind
-from vbraille.translate.encodings import decode, tidy
+from vbraille.translate.encodings import read_text_of, tidy
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,10 +32,7 @@ def read_text(
     source: Source, encoding: str | None = None, *, keep_lines: bool = False
 ) -> Iterator[Block]:
     """Read a text file."""
-    text, _, note = decode(source.stream.read(), encoding)
-    if note:
-        source.note(f"{source.name} {note}")
-    return text_blocks(source, text, keep_lines=keep_lines)
+    return text_blocks(source, read_text_of(source, encoding), keep_lines=keep_lines)
 
 
 def text_blocks(source: Source, text: str, *, keep_lines: bool = False) -> Iterator[Block]:

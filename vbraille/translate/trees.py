@@ -7,20 +7,41 @@ beyond 255 open elements. What is nested deeper than `DEEPEST` stands flat in th
 from __future__ import annotations
 
 import html
+import posixpath
 import re
+import tomllib
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from urllib.parse import unquote
 
 from vbraille.errors import InputError
 from vbraille.translate.encodings import decode
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 DEEPEST = 200
 MOST_ELEMENTS = 2_000_000
 _ENTITY = re.compile(r"&(?!(?:amp|lt|gt|quot|apos);)([A-Za-z]\w*);")
 _DECLARED = re.compile(rb"""(?:encoding|charset)\s*=\s*["']?\s*([\w.:-]+)""")
 _XML_HEAD = re.compile(r"^\s*<\?xml.*?\?>|<!DOCTYPE\s[^>\[]*(?:\[.*?\]\s*)?>", re.S | re.I)
+# What is called so is windows-1252, by the standard of HTML.
+_VAGUE = {"iso-8859-1": "cp1252", "latin1": "cp1252", "us-ascii": "cp1252"}
+
+
+def names(form: str) -> dict[str, frozenset[str]]:
+    """Names of a format's elements by what they are to a reader, as `names.toml` has them."""
+    told = tomllib.loads(Path(__file__).with_name("names.toml").read_text("utf-8"))[form]
+    return {what: frozenset(listed.split()) for what, listed in told.items()}
+
+
+def inside(member: str, address: str) -> str:
+    """Name of the file in a book, or of the anchor, that an address in a file of it means."""
+    path, hash_, anchor = address.strip().partition("#")
+    path = unquote(path.partition("?")[0])
+    if path:
+        member = posixpath.normpath(posixpath.join(posixpath.dirname(member), path))
+    return f"{member}{hash_}{unquote(anchor)}"
 
 
 class Element:
@@ -54,8 +75,7 @@ class Element:
         """Add an element with a text; "_" in attributes' names stands for "-"."""
         named = {key.strip("_").replace("_", "-"): value for key, value in attributes.items()}
         child = Element(name, named)
-        if text:
-            child.children.append(text)
+        child.say(text)
         self.children.append(child)
         return child
 
@@ -63,6 +83,12 @@ class Element:
         """Add text."""
         if text:
             self.children.append(text)
+
+    @property
+    def words(self) -> set[str]:
+        """Words of its class, type and role."""
+        told = (self.get("class"), self.get("type"), self.get("role"))
+        return set(" ".join(told).split())
 
     @property
     def elements(self) -> list[Element]:
@@ -74,36 +100,46 @@ class Element:
         """All text in it."""
         return "".join(child if isinstance(child, str) else child.text for child in self.children)
 
+    def said(self, *names: str) -> str:
+        """Text of the first element of some names in it that has a text, with blanks folded."""
+        texts = (" ".join(element.text.split()) for element in self.iter(*names))
+        return next(filter(None, texts), "")
+
     def iter(self, *names: str) -> Iterator[Element]:
-        """Elements of some names in it, in order, itself among them; of all without a name."""
-        if not names or self.name in names:
+        """Elements of some names in it, in order, itself among them."""
+        if self.name in names:
             yield self
         for child in self.children:
             if isinstance(child, Element):
                 yield from child.iter(*names)
 
 
+class _DamagedError(InputError):
+    """A file is not the markup that it should be."""
+
+
 class _Builder:
     """Target of lxml's parsers: builds a tree that is not too deep."""
 
-    def __init__(self, *, keep_case: bool = False) -> None:
+    def __init__(self, name: str, *, keep_case: bool) -> None:
+        self._name, self._keep_case = name, keep_case
         self.root = Element("root")
-        self._keep_case = keep_case
-        self.flattened = 0
+        self.flattened = self._count = 0
         self._open = [self.root]
-        self._count = 0
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
         self._count += 1
         if self._count > MOST_ELEMENTS:
-            raise InputError(f"it has more than {MOST_ELEMENTS:,} elements")
+            raise InputError(
+                f"{self._name} cannot be read: it has more than {MOST_ELEMENTS:,} elements"
+            )
+        child = self._open[-1]
         if len(self._open) > DEEPEST:
             self.flattened += 1
-            self._open.append(self._open[-1])
-            return
-        name = self._name(tag)
-        child = Element(name, {self._name(key): value for key, value in attributes.items()})
-        self._open[-1].children.append(child)
+        else:
+            named = {self._local(key): value for key, value in attributes.items()}
+            child = Element(self._local(tag), named)
+            self._open[-1].children.append(child)
         self._open.append(child)
 
     def end(self, _tag: str) -> None:
@@ -112,12 +148,39 @@ class _Builder:
     def data(self, text: str) -> None:
         self._open[-1].children.append(text)
 
-    def close(self) -> _Builder:
-        return self
+    def close(self) -> None:
+        pass
 
-    def _name(self, name: str) -> str:
+    def _local(self, name: str) -> str:
         local = name.rpartition("}")[2].rpartition(":")[2]
         return local if self._keep_case else local.lower()
+
+
+def _parse(content: bytes, name: str, *, xml: bool, keep_case: bool = False) -> _Builder:
+    """Feed a parser in pieces.
+
+    Raises
+    ------
+    InputError
+        If it is not what is parsed, or has more elements than a book has.
+    """
+    from lxml import etree
+
+    builder: Any = _Builder(name, keep_case=keep_case)
+    if xml:
+        parser = etree.XMLParser(
+            target=builder, resolve_entities=False, no_network=True, load_dtd=False
+        )
+    else:
+        parser = etree.HTMLParser(target=builder, huge_tree=True, no_network=True, encoding="utf-8")
+    try:
+        for start in range(0, len(content) or 1, 1 << 20):
+            parser.feed(content[start : start + (1 << 20)])
+        parser.close()
+    except (etree.LxmlError, AssertionError, ValueError) as error:
+        said = " ".join(str(error).split())
+        raise _DamagedError(f"{name} is damaged ({said}); get the book again") from None
+    return builder
 
 
 def parse_xml(content: bytes, name: str) -> Element:
@@ -135,32 +198,20 @@ def parse_xml(content: bytes, name: str) -> Element:
     InputError
         If it is no XML, or declares entities.
     """
-    from lxml import etree
-
     if b"<!ENTITY" in content[:65_536]:
         raise InputError(f"{name} declares entities, which no book needs; get another copy")
-    builder: Any = _Builder(keep_case=True)
-    parser: Any = etree.XMLParser(
-        target=builder, resolve_entities=False, no_network=True, load_dtd=False
-    )
-    try:
-        parser.feed(content)
-        return parser.close().root.elements[0]
-    except (
-        etree.XMLSyntaxError,
-        etree.ParserError,
-        ValueError,
-        AssertionError,
-        IndexError,
-    ) as error:
-        said = " ".join(str(error).split())
-        raise InputError(f"{name} is damaged ({said}); get the book again") from None
+    return _parse(content, name, xml=True, keep_case=True).root.elements[0]
 
 
 def read_tree(
-    content: bytes, name: str, *, xml: bool, encoding: str | None = None
-) -> tuple[Element, list[str]]:
-    """Tree of a file of markup, and sentences on what was read otherwise than it says.
+    content: bytes,
+    name: str,
+    note: Callable[[str], object],
+    *,
+    xml: bool,
+    encoding: str | None = None,
+) -> Element:
+    """Tree of a file of markup.
 
     Parameters
     ----------
@@ -168,6 +219,8 @@ def read_tree(
         Bytes of the file.
     name
         Name of the file in messages.
+    note
+        Function that is given sentences on what was read otherwise than it says.
     xml
         Whether it should be XML; what is none is read as HTML.
     encoding
@@ -178,57 +231,31 @@ def read_tree(
     InputError
         If it has more elements than a book has.
     """
-    from lxml import etree
-
-    text, note = _decoded(content, encoding)
-    notes = [f"{name} {note}"] if note else []
+    text, wrong = _decoded(content, encoding)
+    if wrong:
+        note(f"{name} {wrong}")
     text = _XML_HEAD.sub("", text[:4096]) + text[4096:]
-    target: Any = _Builder
-    options: dict[str, Any] = {"huge_tree": True, "no_network": True, "encoding": "utf-8"}
-    built = None
-    if xml:
-        options_xml = {**options, "resolve_entities": False, "load_dtd": False, "huge_tree": False}
-        whole = _ENTITY.sub(lambda found: html.unescape(found[0]), text)
-        built = _parse(etree.XMLParser(target=target(), **options_xml), whole, name)
-    if built is None:
-        parser = etree.HTMLParser(target=target(), **options)
-        built = _parse(parser, text, name) or _Builder()
+    try:
+        unfolded = _ENTITY.sub(lambda found: html.unescape(found[0]), text) if xml else ""
+        built = _parse(unfolded.encode("utf-8", "replace"), name, xml=True)
+    except _DamagedError:
+        built = _parse(text.encode("utf-8", "replace") or b" ", name, xml=False)
     if built.flattened:
-        notes.append(
+        note(
             f"{name} nests elements more than {DEEPEST} deep; {built.flattened} are read as if "
             f"they were not nested"
         )
-    return built.root, notes
-
-
-def _parse(parser: Any, text: str, name: str) -> _Builder | None:
-    """Feed a parser in pieces; None if the text is not what it parses."""
-    from lxml import etree
-
-    content = text.encode("utf-8", "replace")
-    try:
-        for start in range(0, len(content), 1 << 20):
-            parser.feed(content[start : start + (1 << 20)])
-        return parser.close()
-    except InputError as error:
-        raise InputError(f"{name} cannot be read: {error}") from None
-    except (etree.ParserError, etree.XMLSyntaxError, AssertionError):
-        return None
+    return built.root
 
 
 def _decoded(content: bytes, encoding: str | None) -> tuple[str, str]:
     """Text of markup, whatever it declares, and the end of a sentence if that is wrong."""
     declared = _DECLARED.search(content[:2048])
-    try:
-        if encoding is None:
-            return content.decode("utf-8-sig"), ""
-    except UnicodeDecodeError:
-        said = declared[1].decode("ascii", "replace") if declared else ""
-        if said and said.lower() not in ("utf-8", "utf8"):
+    if encoding is None and declared is not None:
+        said = declared[1].decode("ascii", "replace").lower()
+        for name in ("utf-8-sig", _VAGUE.get(said, said)):
             try:
-                said = "cp1252" if said.lower() in ("iso-8859-1", "latin1", "us-ascii") else said
-                return content.decode(said), ""
+                return content.decode(name), ""
             except (LookupError, UnicodeDecodeError):
-                pass
-    text, _, note = decode(content, encoding)
-    return text, note
+                continue
+    return decode(content, encoding)

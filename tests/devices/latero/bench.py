@@ -6,12 +6,12 @@ import heapq
 
 import numpy as np
 
+from tests.devices.latero.network import LateroFaults, Network
 from vbraille.carriers import latero
 from vbraille.devices.latero.device import LateroAddress, LateroDevice
 from vbraille.devices.latero.watchdog import ACTING, MEMORY_BYTES, Board, Watchdog
 from vbraille.devices.latero.wire import CONTROLLER, WRITE, full_request, raw_request
 from vbraille.simulation.lateroboard import LateroBoard
-from vbraille.simulation.laterosim import LateroFaults, Network
 
 MS = 1_000_000
 OFFSETS = (4452, 4_294_960_000, 120_034)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image as Picture
 
-from vbraille.feeling.index import SceneIndex
-from vbraille.feeling.loading import load_scene
+from vbraille.pictures.index import SceneIndex
+from vbraille.pictures.loading import load_scene
 from vbraille.render.braille.models import STRESS2
 from vbraille.render.compiling import SceneMap
 from vbraille.scene.converting import convert_scene

@@ -13,13 +13,13 @@ IGNORED = {
         'it is ignored; put the picture into a scene file, as kind = "image"'
     ],
     '<use xlink:href="http://localhost/a.svg#b"/>': [
-        "it uses 'http://localhost/a.svg#b'; nothing is fetched, so it is ignored"
+        "it uses 'http://localhost/a.svg#b', but nothing is fetched; ignored"
     ],
-    '<use href="other.svg"/>': ["it uses 'other.svg'; nothing is fetched, so it is ignored"],
+    '<use href="other.svg"/>': ["it uses 'other.svg', but nothing is fetched; ignored"],
     '<use href="#none"/>': ["it uses '#none', which is not there; ignored"],
     '<g id="a"><use href="#a"/></g>': ["it uses an element that it stands in; ignored"],
     "<style>@import url(http://localhost/a.css); @media print {g{fill:red}}</style>": [
-        "the style sheet's @import is ignored; nothing is fetched",
+        "the style sheet's @import url(http://localhost/a.css) is ignored",
     ],
     "<style>g::before::after(2) {fill:red}</style>": [
         "the style sheet's selector 'g::before::after(2)' is ignored"
@@ -85,7 +85,9 @@ def test_uses_that_multiply_are_refused_before_they_fill_the_memory(read):
         read(f'<defs>{levels}</defs><use href="#a9"/>')
 
 
-def test_uses_that_nest_too_deep_are_refused(read):
+def test_elements_and_uses_that_nest_too_deep_are_refused(read):
+    with pytest.raises(InputError, match="more than 100 deep; ungroup"):
+        read("<g>" * 200 + "</g>" * 200)
     levels = "".join(f'<g id="a{n}"><use href="#a{n + 1}"/></g>' for n in range(300))
     with pytest.raises(InputError, match="deep; ungroup"):
         read(f'<defs>{levels}</defs><use href="#a0"/>')

@@ -29,7 +29,7 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     from vbraille.cli.exploring import equipped, find_model, say_summary
     from vbraille.cli.printing import say
     from vbraille.errors import InputError
-    from vbraille.feeling.loading import check_fits, load_scene
+    from vbraille.pictures.loading import check_fits, load_scene
     from vbraille.reading.picture import Picture
     from vbraille.render import MODELS
     from vbraille.simulation.specs import is_simulated

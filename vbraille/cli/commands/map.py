@@ -75,8 +75,8 @@ class SwitchStates(click.ParamType):
 )  # fmt: skip
 def command(file: str, out: str, force: bool, outline: bool, model: str, **chosen: Any) -> None:
     """Rest is white and full swing is black."""
-    from vbraille.feeling.loading import load_scene
     from vbraille.files import write_files
+    from vbraille.pictures.loading import load_scene
     from vbraille.pictures.maps import MapRequest, draw_map, draw_signal, kind_of
     from vbraille.render import MODELS
 

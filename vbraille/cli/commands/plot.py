@@ -13,7 +13,7 @@ from vbraille.cli import options
 from vbraille.cli.printing import say
 
 if TYPE_CHECKING:
-    from vbraille.pictures import FigureTable
+    from vbraille.pictures.series import FigureTable
 
 _LINES = 6  # lines of a page, unless told otherwise
 
@@ -48,51 +48,56 @@ def command(ctx: click.Context, kind: str, **chosen: Any) -> None:
     strain      strain of the skin between neighbouring actuators
     page        lines of a text, with the array on one
     """  # noqa: D301, D400 - click's mark for lines that are not wrapped
-    from vbraille import pictures
     from vbraille.errors import InputError
-    from vbraille.files import check_unused
+    from vbraille.files import check_unused, write_files
+    from vbraille.pictures.series import write_csv
 
     if (kind == "page") != (chosen["file"] is not None):
         raise InputError(f"plot {kind} takes {'a text' if kind == 'page' else 'no text'}")
     path = Path(chosen["out"] or f"vbraille-{kind}.png")
+    suffix = path.suffix.lower()[1:]
+    if suffix not in ("png", "svg"):
+        raise InputError(f"cannot draw to {path}: end its name in .png or .svg")
     if not chosen["csv"]:
         check_unused(path, replace=chosen["force"])
     table = _table(ctx, kind, chosen)
     if chosen["csv"]:
-        pictures.write_csv(table, sys.stdout)
+        write_csv(table, sys.stdout)
         return
-    from vbraille.pictures import draw
+    from vbraille.pictures.draw import draw
+    from vbraille.pictures.figurefiles import to_bytes
 
-    draw.save(draw.draw(table), path)
+    content = to_bytes(draw(table), suffix, {"Title": table.title})
+    write_files([(path, content)], replace=chosen["force"])
     say(f"drawn: {table.title}, {path}")
 
 
 def _table(ctx: click.Context, kind: str, chosen: dict[str, Any]) -> FigureTable:
     """Numbers of a drawing."""
-    from vbraille import pictures
     from vbraille.cli.build import Page, build_book, build_model
     from vbraille.errors import InputError
+    from vbraille.pictures import series
     from vbraille.render import MODELS
 
     usual = "vbd" if kind in ("wave", "strain") else "stress2"
     model = build_model(ctx, MODELS[chosen["model"] or usual])
     if kind == "deflection":
-        return pictures.profile(model)
+        return series.profile(model)
     if kind == "wave":
-        return pictures.wave(model)
+        return series.wave(model)
     if kind == "strain":
         if model.name != "vbd":
             raise InputError("plot strain is of the VBD; give --model vbd")
-        return pictures.strain(model.style.geometry, model.style.tuning)
+        return series.strain(model.style.geometry, model.style.tuning)
     if kind == "mapping":
         if model.style.mapping.rows == 1:
             raise InputError(f"the {model.title} has one row; plot mapping is of several rows")
-        return pictures.mapping(model.style, **_letter(ctx, chosen["letter"]), model=model)
+        return series.mapping(model.style, **_letter(ctx, chosen["letter"]), model=model)
     page = Page(ctx, build_book(ctx), model)
     lines = list(islice(page.lines(), None if page.last else _LINES))
     page.say_end()
     x_mm = chosen["x"] + model.display.span_mm / 2
-    return pictures.page(lines, model, x_mm=x_mm, first=page.first)
+    return series.page(lines, model, x_mm=x_mm, first=page.first)
 
 
 def _letter(ctx: click.Context, letter: str | None) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from vbraille.cli import options
 from vbraille.cli.printing import print_json, say
 
 if TYPE_CHECKING:
-    from vbraille.feeling.loading import LoadedScene
+    from vbraille.pictures.loading import LoadedScene
     from vbraille.scene.checking import ElementReport, SceneReport
 
 
@@ -27,8 +27,8 @@ def check(file: str, json: bool) -> int:
     """List the elements of a picture, and what is hard to feel."""
     from dataclasses import asdict, replace
 
-    from vbraille.feeling.checking import felt_advice
-    from vbraille.feeling.loading import load_scene
+    from vbraille.pictures.checking import felt_advice
+    from vbraille.pictures.loading import load_scene
     from vbraille.render import MODELS
     from vbraille.scene.checking import check_scene
 
@@ -105,7 +105,6 @@ def _print(loaded: LoadedScene, report: SceneReport) -> None:
     for element in report.elements:
         say(_described(element))
     remarks = [f"file: {note}" for note in loaded.notes]
-    remarks += [f"vibration: {sentence}" for sentence in report.vibrations]
     remarks += [f"advice: {sentence}" for sentence in report.advice]
     for remark in remarks:
         say(remark)

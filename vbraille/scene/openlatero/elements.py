@@ -61,7 +61,7 @@ def _others(lines: list[int]) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """What is known while a file is read.
+    """Facts of a file while it is read.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import Switch
 from vbraille.scene.textures import Uniform
 from vbraille.scene.traversal import placed_children
-from vbraille.sounds import check_sound
+from vbraille.sounds import read_sound
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -100,7 +100,7 @@ def _audio(element: Element) -> AnyPattern | None:
         try:
             if not name:
                 raise InputError("its sound is not named")
-            check_sound(folder / name)
+            read_sound(folder / name)
         except InputError as error:
             sound.say(f"{_in(folder, error)}; left out")
             continue

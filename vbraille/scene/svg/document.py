@@ -1,7 +1,8 @@
-"""SVG files as trees of elements, read within limits; no other file is looked up."""
+"""SVG files as trees of elements, read within limits, and the words and references in them."""
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
@@ -19,9 +20,13 @@ INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 _XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
 MOST_BYTES = 50 << 20
 MOST_ELEMENTS = 50_000
-MOST_DEPTH = 100
 _PIECE = 1 << 16
-_LONGEST_NAME = 60
+_LONGEST_NAME, _LONGEST_TEXT = 200, 2000
+# Ids that programs give by themselves say nothing, and are the same in many drawings.
+_GIVEN = re.compile(
+    r"(?:svg|g|layer|path|rect|circle|ellipse|line|poly(?:gon|line)|text|tspan|use|image|symbol"
+    r"|XMLID|SVGID|Layer|Ebene|Calque|Capa|Livello|Laag)?[-_]?\d[\d_-]*",
+)
 
 
 def read_tree(path: Path) -> Element:
@@ -38,7 +43,7 @@ def read_tree(path: Path) -> Element:
     ------
     InputError
         If the file cannot be read, is not SVG, is not well formed, has more than 50,000 elements,
-        elements more than 100 deep, or is larger than 50 MB.
+        elements more than 256 deep, or is larger than 50 MB.
     """
     from lxml import etree
 
@@ -46,7 +51,7 @@ def read_tree(path: Path) -> Element:
     if content.startswith(b"\x1f\x8b"):
         raise InputError(f"{path} is a compressed SVG; save it as a plain one")
     parser = etree.XMLPullParser(
-        ("start", "end"),
+        ("start",),
         resolve_entities="internal",  # pyright: ignore[reportArgumentType] - since lxml 5
         no_network=True,
         load_dtd=False,
@@ -54,31 +59,25 @@ def read_tree(path: Path) -> Element:
         remove_comments=True,
         remove_pis=True,
     )
-    too_deep = f"{path} has elements more than {MOST_DEPTH} deep; ungroup some of them"
-    count = depth = 0
+    count = 0
     try:
         for start in range(0, len(content), _PIECE):
             parser.feed(content[start : start + _PIECE])
-            for event, _ in parser.read_events():
-                depth += 1 if event == "start" else -1
-                count += event == "start"
-                if count > MOST_ELEMENTS:
-                    raise InputError(
-                        f"{path} has more than {MOST_ELEMENTS} elements; draw it with fewer"
-                    )
-                if depth > MOST_DEPTH:
-                    raise InputError(too_deep)
+            count += sum(1 for _ in parser.read_events())
+            if count > MOST_ELEMENTS:
+                raise InputError(
+                    f"{path} has more than {MOST_ELEMENTS} elements; draw it with fewer"
+                )
         root = parser.close()
     except etree.XMLSyntaxError as error:
-        problem = error.msg or "it ends too soon"
+        problem = short(error.msg or "it ends too soon", 150)
         if "depth" in problem.lower():
-            raise InputError(too_deep) from None
+            raise InputError(f"{path} has elements far too deep; ungroup some of them") from None
         if "entity" in problem.lower():
             raise InputError(
-                f"{path} has entities that cannot be replaced: {short(problem, 150)}; "
-                "save it without them"
+                f"{path} has entities that cannot be replaced: {problem}; save it without them"
             ) from None
-        raise InputError(f"{path} is not well-formed XML: {short(problem, 150)}") from None
+        raise InputError(f"{path} is not well-formed XML: {problem}") from None
     if root.tag not in (f"{SVG}svg", "svg"):
         raise InputError(f"{path} is not SVG: it is a document of {short(str(root.tag))}")
     return root
@@ -89,16 +88,8 @@ def name_of(element: Element) -> str:
     tag = element.tag
     if not isinstance(tag, str):  # an entity that nothing declares
         return ""
-    if tag.startswith(SVG):
-        return tag[len(SVG) :]
-    return "" if tag.startswith("{") else tag
-
-
-def called(element: Element) -> str:
-    """Element in a message: its name and its id."""
-    own = element.get("id")
-    name = name_of(element) or "element"
-    return f"{name} {short(own)}" if own else name
+    name = tag.removeprefix(SVG)
+    return "" if name.startswith("{") else name
 
 
 def text_of(element: Element) -> str:
@@ -111,29 +102,43 @@ def link_of(element: Element) -> str:
     return (element.get("href") or element.get(_XLINK_HREF) or "").strip()
 
 
-def target_of(reference: str | None) -> str:
+def target_of(reference: str) -> str:
     """Id in a reference ``url(#id)``; empty if it is another.
 
     >>> target_of("url( '#lake' ) red"), target_of("url(http://a.b/c)")
     ('lake', '')
     """
-    text = (reference or "").strip()
-    if not text.startswith("url("):
-        return ""
-    inside = text[4:].partition(")")[0].strip().strip("\"'").strip()
-    return inside[1:] if inside.startswith("#") else ""
+    found = re.match(r"""\s*url\(\s*["']?\s*#([^"')]*)""", reference)
+    return found[1].strip() if found else ""
 
 
-def ids_of(root: Element) -> dict[str, Element]:
-    """Elements by their ids, the first of each."""
-    ids: dict[str, Element] = {}
-    for element in root.iter():
-        if own := element.get("id"):
-            ids.setdefault(own, element)
-    return ids
-
-
-def short(text: str, most: int = _LONGEST_NAME) -> str:
+def short(text: str, most: int = 60) -> str:
     """Text for a message: printable, on one line and not long."""
     plain = "".join(char if char.isprintable() else " " for char in text)
     return plain if len(plain) <= most else f"{plain[:most]}…"
+
+
+def plain(text: str, most: int = _LONGEST_NAME) -> str:
+    """Text with single spaces, without control characters, and not too long."""
+    return short(" ".join(short(text, len(text)).split()), most)
+
+
+def title_of(element: Element) -> str:
+    """Title of an element: its own, or the label that Inkscape gives it; empty for none."""
+    label = element.get(f"{INKSCAPE}label") or element.get("aria-label") or ""
+    return _said(element, "title", _LONGEST_NAME) or ("" if label[:1] == "#" else plain(label))
+
+
+def description_of(element: Element) -> str:
+    """Description of an element; empty for none."""
+    return _said(element, "desc", _LONGEST_TEXT)
+
+
+def _said(element: Element, name: str, most: int) -> str:
+    return next((plain(text_of(child), most) for child in element if name_of(child) == name), "")
+
+
+def id_of(element: Element) -> str:
+    """Id that an author gave an element; empty if a program did, or it has none."""
+    own = element.get("id") or ""
+    return "" if _GIVEN.fullmatch(own) or not own.isprintable() else own[:_LONGEST_NAME]

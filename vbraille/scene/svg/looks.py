@@ -6,17 +6,16 @@ import colorsys
 import re
 from typing import TYPE_CHECKING
 
-from vbraille.scene.measures import LEAST_MM
 from vbraille.scene.patterns import Fill, Uniform, Use
 from vbraille.scene.strokes import Along, Dotting, Stroke
-from vbraille.scene.svg.values import length_of
 from vbraille.toml import Table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.svg.values import Color, Units
+
+    Note = Callable[[str], None]
 
 # Textures of the bank by hue; white surfaces are smooth, and hide the shapes below.
 BY_HUE = {
@@ -69,40 +68,41 @@ class ClassLook(Table, frozen=True, kw_only=True):
 
 def hue_of(color: Color) -> str:
     """Hue of a colour in a word: gray, white, or a key of `BY_HUE`."""
-    red, green, blue = color.red, color.green, color.blue
-    spread = max(red, green, blue) - min(red, green, blue)
+    spread = max(color[:3]) - min(color[:3])
     if color.darkness < 0.08 and spread < 0.2:
         return "white"
     if spread < 0.12:
         return "gray"
-    hue = 360 * colorsys.rgb_to_hsv(red, green, blue)[0]
+    hue = 360 * colorsys.rgb_to_hsv(*color[:3])[0]
     return next(name for end, name in _HUES if hue <= end)
 
 
-def fill_of(color: Color, note: Callable[[str], None]) -> Fill | None:
-    """Fill of a surface of a colour; None for a surface that is not felt.
+def strength_of(color: Color, note: Note) -> float | None:
+    """Amplitude that stands for a colour, 0 for white; None for a colour that is not felt.
 
     Grays are as strong as they are dark. Colours are as strong as can be.
     """
+    hue = hue_of(color)
+    if hue == "white" and LEAST_SHARE < color.alpha < _HIDING:
+        note("its white is seen through, and left out")
+        return None
     if color.alpha <= LEAST_SHARE:
         return None
-    hue = hue_of(color)
-    if hue == "white":
-        if color.alpha < _HIDING:
-            note("its white is seen through, and left out")
-            return None
+    amounts = {"white": 0.0, "gray": color.darkness}
+    return round(amounts.get(hue, 1.0) * color.alpha, 3)
+
+
+def fill_of(color: Color, note: Note) -> Fill | None:
+    """Fill of a surface of a colour; None for a surface that is not felt."""
+    strength = strength_of(color, note)
+    if strength is None:
+        return None
+    if hue_of(color) == "white":
         return Fill(texture=Uniform(level=0.0))
-    amount = color.darkness if hue == "gray" else 1.0
-    texture: AnyPattern = Use(name=BY_HUE[hue], amplitude=round(amount * color.alpha, 3))
-    return Fill(texture=texture)
+    return Fill(texture=Use(name=BY_HUE[hue_of(color)], amplitude=strength))
 
 
-def stroke_of(
-    color: Color,
-    width_mm: float,
-    dashes_mm: list[float],
-    note: Callable[[str], None],
-) -> Stroke | None:
+def stroke_of(color: Color, width_mm: float, dashes_mm: list[float], note: Note) -> Stroke | None:
     """Stroke of a line of a colour; None for a line that is not felt.
 
     Parameters
@@ -116,44 +116,25 @@ def stroke_of(
     note
         Function that keeps a remark.
     """
-    if color.alpha <= LEAST_SHARE or width_mm <= 0:
-        return None
-    white = hue_of(color) == "white"
-    if white and color.alpha < _HIDING:
-        note("its white is seen through, and left out")
+    strength = strength_of(color, note) if width_mm > 0 else None
+    if strength is None:
         return None
     if width_mm < LEAST_STROKE_MM:
         note(f"its line is drawn {LEAST_STROKE_MM:g} mm wide, not to be missed")
+    along = None
+    if dashes_mm and dashes_mm[1] > 0:
+        dash, gap = (min(max(one, _LEAST_DASH_MM), _MOST_STROKE_MM) for one in dashes_mm[:2])
+        along = Along(ridge_mm=round(gap, 4), gap_mm=round(dash, 4))
+        if dashes_mm != dashes_mm[:2] * (len(dashes_mm) // 2):
+            note("its first dash and the gap after it count, and no others")
     width_mm = round(min(max(width_mm, LEAST_STROKE_MM), _MOST_STROKE_MM), 4)
-    amount = color.darkness if hue_of(color) == "gray" else 1.0
-    return Stroke(
-        width_mm=width_mm,
-        edge_mm=min(_EDGE_MM, width_mm / 2),
-        amplitude=0.0 if white else round(amount * color.alpha, 3),
-        along=_dashed(dashes_mm, note),
-    )
+    return Stroke(width_mm=width_mm, edge_mm=_EDGE_MM, amplitude=strength, along=along)
 
 
 def dashes_of(style: Mapping[str, str], scale_mm: float, units: Units) -> list[float]:
     """Lengths of dashes and gaps in mm; empty for a whole line."""
-    text = style.get("stroke-dasharray", "none").strip()
-    words = [word for word in re.split(r"[\s,]+", text) if word]
-    lengths = [length_of(word, units.diagonal, units) for word in words]
-    known = [length * scale_mm for length in lengths if length is not None and length >= 0]
-    if len(known) != len(lengths) or sum(known) <= 0:
+    words = re.split(r"[\s,]+", style.get("stroke-dasharray", "none"))
+    lengths = [(units.length(word, units.diagonal) or 0.0) * scale_mm for word in words]
+    if min(lengths) < 0 or sum(lengths) <= 0:
         return []
-    return known * 2 if len(known) % 2 else known
-
-
-def _dashed(dashes_mm: list[float], note: Callable[[str], None]) -> Along | None:
-    """Texture along a stroke that is drawn with dashes: cut in its gaps."""
-    if not dashes_mm or dashes_mm[1] <= 0:
-        return None
-    dash, gap = dashes_mm[:2]
-    if any(
-        list(pair) != [dash, gap] for pair in zip(dashes_mm[2::2], dashes_mm[3::2], strict=True)
-    ):
-        note("its first dash and the gap after it count, and no others")
-    dash = min(max(dash, _LEAST_DASH_MM), _MOST_STROKE_MM)
-    gap = min(max(gap, _LEAST_DASH_MM, LEAST_MM), _MOST_STROKE_MM)
-    return Along(ridge_mm=round(gap, 4), gap_mm=round(dash, 4))
+    return lengths * 2 if len(lengths) % 2 else lengths

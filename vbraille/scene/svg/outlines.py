@@ -1,15 +1,22 @@
-"""Outlines of shapes as places on the canvas: paths, basic shapes, fills, strokes and clips."""
+"""Outlines of shapes as places on the canvas: paths, basic shapes, fills, strokes and clips.
+
+Places are whole ten-thousandths of a millimetre, which are Clipper's numbers.
+"""
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import pyclipper as clipper_library
+from svg.path import Arc, Close, CubicBezier, Move, Path, QuadraticBezier, parse_path
 
 from vbraille.scene.measures import MOST_MM
 from vbraille.scene.svg.document import name_of
-from vbraille.scene.svg.values import AffineMap, length_of, numbers_of
+from vbraille.scene.svg.values import AffineMap, numbers_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -18,42 +25,39 @@ if TYPE_CHECKING:
     from vbraille.scene.svg.document import Element
     from vbraille.scene.svg.values import Units
 
+pyclipper: Any = clipper_library  # its types are not declared
 SHAPES = frozenset(("path", "rect", "circle", "ellipse", "line", "polyline", "polygon"))
 # How far a chord may be from its curve. No array shows less.
-FLATNESS_MM = 0.05
+_FLATNESS_MM = 0.05
 MOST_POINTS = 500_000  # of a drawing
 TOO_FAR = "it goes farther than 10 m from the drawing's corner"
-_MOST_CHARACTERS = 2_000_000  # of the text of a path
-_MOST_CUT = 5_000  # places of outlines that Clipper is given at once
+_PER_MM = 10_000
+_MOST_CHARACTERS = 1_000_000  # of the text of a path
+# Outlines of more places, or so long that they must cross very often, take Clipper too long.
+_MOST_CUT, _MOST_DIAGONALS = 5_000, 500
 _MOST_CHORDS = 10_000  # of a curve
-_DECIMALS = 4  # of a millimetre: places that are equal so far are one
-_CLIPPER = 10**_DECIMALS  # Clipper's whole numbers in a millimetre
-# Commands of a path, and how many numbers each takes at a time. Flags of arcs may stand without
-# spaces, so those of arcs are not counted.
-_COMMAND = re.compile(r"([MmZzLlHhVvCcSsQqTtAa])([-+0-9.eE,\s]*)", re.ASCII)
-_COUNTS = {"M": 2, "Z": 0, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 1}
+_COMMAND = re.compile(r"[MmZzLlHhVvCcSsQqTtAa][-+0-9.eE,\s]*", re.ASCII)
 
-Ring = tuple["Point", ...]
+Ring = list[tuple[int, int]]
 
 
-@dataclass(frozen=True, slots=True)
-class Contour:
-    """Places of a line, in mm, and whether it goes back to its first place."""
+class Contour(NamedTuple):
+    """Places of a line, and whether it goes back to its first place."""
 
-    points_mm: Ring
+    ring: Ring
     closed: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Corner:
+class Corner(NamedTuple):
     """A vertex of a path in user units, and the directions in and out of it; 0 for none."""
 
     place: complex
-    before: complex
-    after: complex
+    before: complex = 0.0
+    after: complex = 0.0
 
 
-def segments_of(d: str) -> tuple[Any, bool]:
+@lru_cache(maxsize=50)
+def segments_of(d: str) -> tuple[Path, bool]:
     """Segments of the text of a path, up to where it goes wrong.
 
     Returns
@@ -61,103 +65,87 @@ def segments_of(d: str) -> tuple[Any, bool]:
     svg.path.Path, bool
         The segments, and whether the text was read to its end.
     """
-    from svg.path import Path, parse_path
-
-    end, whole = 0, len(d) <= _MOST_CHARACTERS
-    if d.lstrip()[:1].upper() != "M":
-        return Path(), not d.strip()
-    for found in _COMMAND.finditer(d) if whole else ():
-        numbers = numbers_of(found[2])
-        count = _COUNTS[found[1].upper()]
-        # The sign or point of a next number may follow without a space.
-        rest = re.sub(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[\s,]", "", found[2])
-        wrong = len(numbers) % count or not numbers if count else bool(numbers)
-        if wrong or rest or d[end : found.start()].strip(" \t\r\n,"):
-            whole = False
+    d = d.strip()
+    if d[:1] not in ("M", "m") or len(d) > _MOST_CHARACTERS:
+        return Path(), not d
+    whole = None if _COMMAND.sub("", d) else _parsed(d)
+    if whole is not None:
+        return whole, True
+    end = 0
+    for command in _COMMAND.finditer(d):
+        if command.start() != end or _parsed(f"M0 0{command[0]}") is None:
             break
-        end = found.end()
-    whole = whole and end >= len(d.rstrip())
+        end = command.end()
+    return _parsed(d[:end]) or Path(), False
+
+
+def _parsed(d: str) -> Path | None:
+    """Segments of the text of a path; None if it is not right."""
     try:
-        return parse_path(d[:end]), whole
+        return parse_path(d)
     # It means to raise ValueError, and for some texts raises errors of its own code.
-    except (ValueError, ArithmeticError, AttributeError, IndexError, TypeError, AssertionError):
-        return Path(), False
+    except (ValueError, ArithmeticError, AttributeError, IndexError, AssertionError):
+        return None
 
 
 def path_of(element: Element, style: Mapping[str, str], units: Units) -> str:
     """Text of a path for a shape; empty if the shape has no size."""
-
-    def get(name: str, whole: float) -> float:
-        return _positive(style.get(name), whole, units, below=True) or 0.0
-
-    width, height = units.view
-    match name_of(element):
-        case "path":
-            d = element.get("d") or ""
-            return "" if d.strip() == "none" else d
-        case "line":
-            places = [
-                length_of(element.get(name), whole, units) or 0.0
-                for name, whole in zip(("x1", "y1", "x2", "y2"), units.view * 2, strict=True)
-            ]
-            return "M{!r} {!r}L{!r} {!r}".format(*places)
-        case "polyline" | "polygon" as name:
-            numbers = numbers_of(element.get("points"))
-            numbers = numbers[: len(numbers) // 2 * 2]
-            if len(numbers) < 4:
-                return ""
-            return f"M{' '.join(map(repr, numbers))}{'Z' * (name == 'polygon')}"
-        case "rect":
-            x, y, w, h = (
-                get("x", width),
-                get("y", height),
-                get("width", width),
-                get("height", height),
-            )
-            if w <= 0 or h <= 0:
-                return ""
-            rx, ry = radii_of(style, units)
-            rx, ry = min(rx, w / 2), min(ry, h / 2)
-            if not rx or not ry:
-                return f"M{x!r} {y!r}H{x + w!r}V{y + h!r}H{x!r}Z"
-            arc = f"A{rx!r} {ry!r} 0 0 1"
-            return (
-                f"M{x + rx!r} {y!r}H{x + w - rx!r}{arc} {x + w!r} {y + ry!r}"
-                f"V{y + h - ry!r}{arc} {x + w - rx!r} {y + h!r}"
-                f"H{x + rx!r}{arc} {x!r} {y + h - ry!r}V{y + ry!r}{arc} {x + rx!r} {y!r}Z"
-            )
-        case _:
-            (x, y), (rx, ry) = round_of(element, style, units)
-            if rx <= 0 or ry <= 0:
-                return ""
-            arc = f"A{rx!r} {ry!r} 0 0 1"
-            return f"M{x - rx!r} {y!r}{arc} {x + rx!r} {y!r}{arc} {x - rx!r} {y!r}Z"
+    name = name_of(element)
+    if name == "path":
+        d = element.get("d") or ""
+        return "" if d.strip() == "none" else d
+    if name == "line":
+        start = units.place(element.get("x1"), element.get("y1"))
+        end = units.place(element.get("x2"), element.get("y2"))
+        return f"M{start.real!r} {start.imag!r}L{end.real!r} {end.imag!r}"
+    if name in ("polyline", "polygon"):
+        numbers = numbers_of((element.get("points") or "")[:_MOST_CHARACTERS])
+        places = " ".join(map(repr, numbers[: len(numbers) // 2 * 2]))
+        return f"M{places}{'Z' * (name == 'polygon')}" if len(numbers) >= 4 else ""
+    if name == "rect":
+        place, size = (
+            units.place(style.get(x), style.get(y)) for x, y in (("x", "y"), ("width", "height"))
+        )
+        x, y, w, h = place.real, place.imag, size.real, size.imag
+        rx, ry = min(_radii(style, units)[0], w / 2), min(_radii(style, units)[1], h / 2)
+        if w <= 0 or h <= 0:
+            return ""
+        if not rx or not ry:
+            return f"M{x!r} {y!r}H{x + w!r}V{y + h!r}H{x!r}Z"
+        arc = f"A{rx!r} {ry!r} 0 0 1"
+        return (
+            f"M{x + rx!r} {y!r}H{x + w - rx!r}{arc} {x + w!r} {y + ry!r}"
+            f"V{y + h - ry!r}{arc} {x + w - rx!r} {y + h!r}"
+            f"H{x + rx!r}{arc} {x!r} {y + h - ry!r}V{y + ry!r}{arc} {x + rx!r} {y!r}Z"
+        )
+    middle, (rx, ry) = round_of(element, style, units)
+    x, y = middle.real, middle.imag
+    arc = f"A{rx!r} {ry!r} 0 0 1"
+    return f"M{x - rx!r} {y!r}{arc} {x + rx!r} {y!r}{arc} {x - rx!r} {y!r}Z" if rx and ry else ""
 
 
-def round_of(element: Element, style: Mapping[str, str], units: Units) -> tuple[Point, Point]:
-    """Middle and radii of a circle or an ellipse, in user units."""
-    x = length_of(style.get("cx"), units.view[0], units) or 0.0
-    y = length_of(style.get("cy"), units.view[1], units) or 0.0
-    if name_of(element) == "circle":
-        radius = _positive(style.get("r"), units.diagonal, units) or 0.0
-        return (x, y), (radius, radius)
-    return (x, y), radii_of(style, units)
+def round_of(element: Element, style: Mapping[str, str], units: Units) -> tuple[complex, Point]:
+    """Middle and radii of a circle or an ellipse, in user units; 0 for one without a size."""
+    middle = units.place(style.get("cx"), style.get("cy"))
+    if name_of(element) == "ellipse":
+        return middle, _radii(style, units)
+    radius = max(units.length(style.get("r"), units.diagonal) or 0.0, 0.0)
+    return middle, (radius, radius)
 
 
-def radii_of(style: Mapping[str, str], units: Units) -> Point:
+def _radii(style: Mapping[str, str], units: Units) -> Point:
     """Radii along x and y; one that is not given, or below 0, is like the other."""
-    rx = _positive(style.get("rx"), units.view[0], units)
-    ry = _positive(style.get("ry"), units.view[1], units)
-    return (rx if rx is not None else ry or 0.0), (ry if ry is not None else rx or 0.0)
+    rx, ry = (
+        -1.0 if length is None else length
+        for length in (
+            units.length(style.get("rx"), units.view[0]),
+            units.length(style.get("ry"), units.view[1]),
+        )
+    )
+    return max(rx if rx >= 0 else ry, 0.0), max(ry if ry >= 0 else rx, 0.0)
 
 
-def _positive(text: str | None, whole: float, units: Units, *, below: bool = False) -> float | None:
-    """Length that may not be below 0; None if it is, or none is written."""
-    length = length_of(text, whole, units)
-    return length if length is None or length >= 0 or below else None
-
-
-def contours_of(segments: Any, matrix: AffineMap, room: int = MOST_POINTS) -> list[Contour]:
+def contours_of(segments: Path, matrix: AffineMap, room: int = MOST_POINTS) -> list[Contour]:
     """Contours of segments of a path, with curves flattened to 0.05 mm.
 
     Parameters
@@ -174,125 +162,102 @@ def contours_of(segments: Any, matrix: AffineMap, room: int = MOST_POINTS) -> li
     ValueError
         If they go farther than 10 m.
     """
-    from svg.path import Close, Move
-
     contours: list[Contour] = []
-    places: list[complex] = []
+    ring: Ring = []
+    closed = False
+
+    def add() -> None:
+        if len(ring) > 3 and ring[0] == ring[-1]:
+            ring.pop()
+            contours.append(Contour(ring, closed=True))
+        elif len(ring) > 1:
+            contours.append(Contour(ring, closed and len(ring) > 2))
+
     for segment in segments:
-        if isinstance(segment, Move | Close):
-            _add(contours, places, closed=isinstance(segment, Close))
-            room -= len(places)
-            places = [matrix.put(segment.end)]
-        else:
-            places += _chords(segment, matrix)
-        if len(places) > room:
+        if isinstance(segment, Move):
+            add()
+            ring = []
+        closed = isinstance(segment, Close)
+        for place in _chords(segment, matrix.largest):
+            at = matrix(place)
+            if not max(abs(at.real), abs(at.imag)) <= MOST_MM:  # or it is no number
+                raise ValueError(TOO_FAR)
+            point = round(at.real * _PER_MM), round(at.imag * _PER_MM)
+            if point != (ring[-1] if ring else None):
+                ring.append(point)
+                room -= 1
+        if closed:
+            if ring[-1] == ring[0] and len(ring) > 1:
+                ring.pop()
+            add()
+            closed, ring = False, [ring[0]]
+        if room < 0:
             break
-    _add(contours, places, closed=False)
+    add()
     return contours
 
 
-def _add(contours: list[Contour], places: list[complex], *, closed: bool) -> None:
-    """Add a contour, each place of it once; none if it has no length."""
-    points: list[Point] = []
-    for place in places:
-        x, y = round(place.real, _DECIMALS) + 0.0, round(place.imag, _DECIMALS) + 0.0
-        if not (abs(x) <= MOST_MM and abs(y) <= MOST_MM):
-            raise ValueError(TOO_FAR)
-        if not points or points[-1] != (x, y):
-            points.append((x, y))
-    if closed or (len(points) > 3 and points[0] == points[-1]):
-        closed = True
-        while len(points) > 1 and points[-1] == points[0]:
-            points.pop()
-    if len(points) == 2:
-        closed = False
-    if len(points) >= 2:
-        contours.append(Contour(tuple(points), closed))
-
-
-def _chords(segment: Any, matrix: AffineMap) -> list[complex]:
+def _chords(segment: Any, scale: float) -> list[complex]:
     """Ends of the chords in place of a segment, without its start."""
-    from svg.path import Arc, CubicBezier, QuadraticBezier
-
-    end = matrix.put(segment.end)
+    start, end, bend = getattr(segment, "start", segment.end), segment.end, 0.0
     # A chord is within h² |B''| / 8 of its curve, h being its share of it.
     if isinstance(segment, CubicBezier):
-        start, one, two = map(matrix.put, (segment.start, segment.control1, segment.control2))
+        one, two = segment.control1, segment.control2
         bend = 6 * max(abs(start - 2 * one + two), abs(one - 2 * two + end))
-        return [
-            start * u**3 + 3 * one * t * u * u + 3 * two * t * t * u + end * t**3
-            for t, u in ((t, 1 - t) for t in _shares(bend))
-        ]
-    if isinstance(segment, QuadraticBezier):
-        start, one = matrix.put(segment.start), matrix.put(segment.control)
-        bend = 2 * abs(start - 2 * one + end)
-        return [start * (1 - t) ** 2 + 2 * one * t * (1 - t) + end * t * t for t in _shares(bend)]
-    if isinstance(segment, Arc) and segment.start != segment.end:
-        radii = segment.radius.real, segment.radius.imag
-        if all(radii):
-            largest = max(radii) * segment.radius_scale * matrix.largest
-            bend = largest * math.radians(segment.delta) ** 2
-            return [*(matrix.put(segment.point(t)) for t in _shares(bend)[:-1]), end]
-    return [end]
+    elif isinstance(segment, QuadraticBezier):
+        bend = 2 * abs(start - 2 * segment.control + end)
+    elif isinstance(segment, Arc) and start != end and all(_parts(segment.radius)):
+        largest = max(_parts(segment.radius)) * segment.radius_scale
+        bend = largest * math.radians(segment.delta) ** 2
+    bend = min(bend * scale, MOST_MM * MOST_MM)
+    count = min(math.ceil(math.sqrt(bend / (8 * _FLATNESS_MM))), _MOST_CHORDS)
+    return [*(segment.point(number / count) for number in range(1, count)), end]
 
 
-def _shares(bend: float) -> list[float]:
-    """Places between 0 and 1, the last 1, for a second derivative of at most ``bend`` mm."""
-    if not math.isfinite(bend):
-        raise ValueError(TOO_FAR)
-    count = max(math.ceil(math.sqrt(bend / (8 * FLATNESS_MM))), 1)
-    count = min(count, _MOST_CHORDS)
-    return [number / count for number in range(1, count + 1)]
+def _parts(number: complex) -> Point:
+    return number.real, number.imag
 
 
-def corners_of(segments: Any) -> list[Corner]:
+def corners_of(segments: Path) -> list[Corner]:
     """Vertices of a path, at which markers stand."""
-    from svg.path import Close, Move
-
     corners: list[Corner] = []
     first = 0
-    closing = 0j
     for segment in segments:
         if isinstance(segment, Move):
             first = len(corners)
-            corners.append(Corner(segment.end, 0j, 0j))
+            corners.append(Corner(segment.end))
             continue
-        if not corners:
-            return []
-        away, arrives = _directions(segment)
+        # At its very ends a curve may have no direction.
+        away, arrives = (
+            way / abs(way) if abs(way) > 1e-9 else 0.0
+            for way in (
+                segment.point(1e-4) - segment.start,
+                segment.end - segment.point(1 - 1e-4),
+            )
+        )
         last = corners[-1]
-        corners[-1] = Corner(last.place, last.before, away or last.before)
-        corners.append(Corner(segment.end, arrives or away, 0j))
+        corners[-1] = last._replace(after=away or last.before)
+        corners.append(Corner(segment.end, arrives or last.before))
         if isinstance(segment, Close):
-            start = corners[first]
-            closing = arrives or corners[-2].before
-            corners[-1] = Corner(segment.end, closing, start.after)
-            corners[first] = Corner(start.place, closing, start.after)
+            corners[-1] = corners[-1]._replace(after=corners[first].after)
+            corners[first] = corners[first]._replace(before=corners[-1].before)
     return corners
 
 
-def _directions(segment: Any) -> tuple[complex, complex]:
-    """Unit vectors at the start and the end of a segment; 0 where it has no length."""
-    from svg.path import Arc, CubicBezier, QuadraticBezier
-
-    start, end = segment.start, segment.end
-    if isinstance(segment, CubicBezier):
-        ways = [segment.control1 - start, segment.control2 - start, end - start]
-        back = [end - segment.control2, end - segment.control1, end - start]
-    elif isinstance(segment, QuadraticBezier):
-        ways, back = [segment.control - start, end - start], [end - segment.control, end - start]
-    elif isinstance(segment, Arc) and start != end:
-        ways, back = [segment.point(1e-3) - start, end - start], [end - segment.point(1 - 1e-3)]
-    else:
-        ways = back = [end - start]
-    return _first_way(ways), _first_way(back)
+def _too_tangled(rings: Sequence[Ring]) -> bool:
+    """Tell whether Clipper may take too long for outlines."""
+    places = [place for ring in rings for place in ring]
+    sides = [max(side) - min(side) for side in zip(*places, strict=True)]
+    length = sum(math.dist(*edge) for ring in rings for edge in itertools.pairwise(ring))
+    return len(places) > _MOST_CUT or length > _MOST_DIAGONALS * math.hypot(*sides)
 
 
-def _first_way(ways: Iterable[complex]) -> complex:
-    return next((way / abs(way) for way in ways if abs(way) > 1e-9), 0j)
+def _refuse_tangled(rings: Sequence[Ring]) -> None:
+    if _too_tangled(rings):
+        raise ValueError("it has too many places or crossings to be cut")
 
 
-def filled(rings: Sequence[Ring], rule: str) -> tuple[list[Ring], bool]:
+def filled(rings: list[Ring], rule: str) -> tuple[list[Ring], bool]:
     """Rings by which the even-odd rule fills an area.
 
     Parameters
@@ -305,75 +270,78 @@ def filled(rings: Sequence[Ring], rule: str) -> tuple[list[Ring], bool]:
     Returns
     -------
     list of rings, bool
-        The rings, and whether they are right: outlines of more than 5,000 places are left as they
-        are, which is wrong where they cross or overlap.
+        The rings, and whether they are right: outlines of more than 5,000 places, or that cross
+        very often, are left as they are, which is wrong where they overlap.
     """
-    pyclipper = _clipper()
-    if sum(map(len, rings)) > _MOST_CUT:
-        return list(rings), rule == "evenodd"
+    if not rings or _too_tangled(rings):
+        return rings, not rings or rule == "evenodd"
     kind = pyclipper.PFT_EVENODD if rule == "evenodd" else pyclipper.PFT_NONZERO
-    done = pyclipper.SimplifyPolygons([_whole(ring) for ring in rings], kind)
-    found = [ring for ring in map(_ring, done) if len(ring) >= 3]
+    found = _rings(pyclipper.SimplifyPolygons(rings, kind))
     same = sorted(map(sorted, found)) == sorted(map(sorted, rings))
-    return (list(rings) if same else found), True
+    return (rings if same else found), True
 
 
-def cut(rings: Sequence[Ring], clip: Sequence[Ring]) -> list[Ring]:
-    """Parts of an area that are within another, both by the even-odd rule."""
-    pyclipper = _clipper()
-    if not rings or not clip or sum(map(len, (*rings, *clip))) > 10 * _MOST_CUT:
-        return list(rings) if clip else []
+def cut(rings: list[Ring], clip: list[Ring]) -> list[Ring]:
+    """Parts of an area that are within another, both by the even-odd rule.
+
+    Raises
+    ------
+    ValueError
+        If it takes too long to find them.
+    """
+    if not rings or not clip:
+        return []
+    _refuse_tangled(rings)
     clipper = pyclipper.Pyclipper()
     try:
-        clipper.AddPaths([_whole(ring) for ring in rings], pyclipper.PT_SUBJECT, True)
-        clipper.AddPaths([_whole(ring) for ring in clip], pyclipper.PT_CLIP, True)
-        done = clipper.Execute(
-            pyclipper.CT_INTERSECTION, pyclipper.PFT_EVENODD, pyclipper.PFT_EVENODD
-        )
+        clipper.AddPaths(rings, pyclipper.PT_SUBJECT, True)
+        clipper.AddPaths(clip, pyclipper.PT_CLIP, True)
+        rule = pyclipper.PFT_EVENODD
+        return _rings(clipper.Execute(pyclipper.CT_INTERSECTION, rule, rule))
     except pyclipper.ClipperException:  # nothing with an area is left
         return []
-    return [ring for ring in map(_ring, done) if len(ring) >= 3]
 
 
-def stroked(contours: Sequence[Contour], width_mm: float, style: Mapping[str, str]) -> list[Ring]:
-    """Area of a stroke, as rings by the even-odd rule."""
-    pyclipper = _clipper()
-    joins = {"round": pyclipper.JT_ROUND, "bevel": pyclipper.JT_SQUARE}
-    ends = {"round": pyclipper.ET_OPENROUND, "square": pyclipper.ET_OPENSQUARE}
-    join = joins.get(style.get("stroke-linejoin", "miter"), pyclipper.JT_MITER)
-    end = ends.get(style.get("stroke-linecap", "butt"), pyclipper.ET_OPENBUTT)
-    offset = pyclipper.PyclipperOffset(4.0, FLATNESS_MM * _CLIPPER)
+def stroked(contours: Sequence[Contour], width_mm: float) -> list[Ring]:
+    """Area of a stroke, as rings by the even-odd rule.
+
+    Raises
+    ------
+    ValueError
+        If it takes too long to find it.
+    """
+    _refuse_tangled([one.ring for one in contours])
+    offset = pyclipper.PyclipperOffset(2.0, _FLATNESS_MM * _PER_MM)
     for contour in contours:
-        kind = pyclipper.ET_CLOSEDLINE if contour.closed else end
-        offset.AddPath(_whole(contour.points_mm), join, kind)
-    return [ring for ring in map(_ring, offset.Execute(width_mm / 2 * _CLIPPER)) if len(ring) >= 3]
+        end = pyclipper.ET_CLOSEDLINE if contour.closed else pyclipper.ET_OPENROUND
+        offset.AddPath(contour.ring, pyclipper.JT_ROUND, end)
+    return _rings(offset.Execute(width_mm / 2 * _PER_MM))
 
 
-def is_within(rings: Sequence[Ring], clip: Sequence[Ring]) -> bool:
-    """Tell whether an area is wholly within another, but for a thousandth of it."""
-    return area(cut(rings, clip)) >= area(rings) * 0.999
+def box_of(contours: Sequence[Contour], reach_mm: float) -> Ring:
+    """Rectangle around contours, and so far around them."""
+    xs, ys = zip(*(place for one in contours for place in one.ring), strict=True)
+    reach = round(reach_mm * _PER_MM)
+    left, top, right, bottom = min(xs) - reach, min(ys) - reach, max(xs) + reach, max(ys) + reach
+    return [(left, top), (right, top), (right, bottom), (left, bottom)]
 
 
-def area(rings: Sequence[Ring]) -> float:
-    """Area of rings of Clipper's, whose holes go round the other way, in mm²."""
-    return abs(sum(_turned_area(ring) for ring in rings))
+def is_within(ring: Ring, clip: list[Ring]) -> bool:
+    """Tell whether a ring is wholly within an area, but for a thousandth of it."""
+    inside = sum(map(pyclipper.Area, cut([ring], clip)))
+    return abs(inside) >= abs(pyclipper.Area(ring)) * 0.999
 
 
-def _turned_area(ring: Ring) -> float:
-    pairs = zip(ring, (*ring[1:], ring[0]), strict=True)
-    return sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in pairs) / 2
+def ring_of(places_mm: Iterable[complex]) -> Ring:
+    """Ring of places in mm."""
+    return [(round(place.real * _PER_MM), round(place.imag * _PER_MM)) for place in places_mm]
 
 
-def _clipper() -> Any:
-    """Library of Clipper, whose types are not declared."""
-    import pyclipper
-
-    return pyclipper
+def in_mm(ring: Ring) -> tuple[Point, ...]:
+    """Places of a ring in mm."""
+    return tuple((x / _PER_MM, y / _PER_MM) for x, y in ring)
 
 
-def _whole(ring: Iterable[Point]) -> list[tuple[int, int]]:
-    return [(round(x * _CLIPPER), round(y * _CLIPPER)) for x, y in ring]
-
-
-def _ring(path: Iterable[Sequence[int]]) -> Ring:
-    return tuple((x / _CLIPPER + 0.0, y / _CLIPPER + 0.0) for x, y in path)
+def _rings(paths: Sequence[Sequence[Sequence[int]]]) -> list[Ring]:
+    """Rings of Clipper's that have an area."""
+    return [[(x, y) for x, y in path] for path in paths if len(path) >= 3]

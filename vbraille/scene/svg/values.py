@@ -2,29 +2,49 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 import re
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import tinycss2
+from tinycss2.color5 import parse_color
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_LENGTH = re.compile(rf"\s*({_NUMBER})\s*([a-zA-Z]*|%)\s*", re.ASCII)
-_NUMBERS = re.compile(_NUMBER, re.ASCII)
-_CALLED = re.compile(r"\s*,?\s*([a-zA-Z]+)\s*\(([^()]*)\)", re.ASCII)
+_NUMBERS = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_LONGEST = 10_000  # characters of a value
 # Millimetres of a pixel of CSS, 96 to the inch.
 PX_MM = 25.4 / 96
-_PX = {"": 1.0, "px": 1.0, "pt": 96 / 72, "pc": 16.0, "mm": 96 / 25.4, "cm": 960 / 25.4,
-       "in": 96.0, "q": 24 / 25.4}  # fmt: skip
-_FONTS = {"em": 1.0, "ex": 0.5, "ch": 0.5, "ic": 1.0}
-_ANGLES = {"": 1.0, "deg": 1.0, "grad": 0.9, "rad": 180 / math.pi, "turn": 360.0}
-_KEYWORD_SHARES = {"left": 0.0, "top": 0.0, "center": 0.5, "right": 1.0, "bottom": 1.0}
-_MOST_NESTED = 20
+_UNITS = {"": 1.0, "px": 1.0, "pt": 96 / 72, "pc": 16.0, "mm": 96 / 25.4, "cm": 960 / 25.4,
+          "in": 96.0, "q": 24 / 25.4, "rem": 16.0,
+          "deg": 1.0, "grad": 0.9, "rad": 180 / math.pi, "turn": 360.0}  # fmt: skip
+_FUNCTIONS: dict[str, Callable[..., float]] = {
+    "calc": lambda value: value,
+    "min": lambda *values: min(values),
+    "max": lambda *values: max(values),
+    "clamp": lambda least, value, most: max(least, min(value, most)),
+}
+_ORIGINS = {"left": "0%", "top": "0%", "center": "50%", "right": "100%", "bottom": "100%"}
+# Errors that values which are not understood end in.
+NOT_UNDERSTOOD = (ValueError, TypeError, LookupError, ArithmeticError, AttributeError)
 
 Point = tuple[float, float]
 Box = tuple[float, float, float, float]  # left, top, width, height
+
+
+@lru_cache(maxsize=10_000)
+def tokens_of(text: str) -> list[Any]:
+    """Component values of CSS without white space; none of a text that is far too long."""
+    values = tinycss2.parse_component_value_list(text[: _LONGEST + 1], skip_comments=True)
+    return _shown(values) if len(text) <= _LONGEST else []
+
+
+def _shown(tokens: Sequence[Any]) -> list[Any]:
+    return [token for token in tokens if token.type != "whitespace"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,124 +61,106 @@ class Units:
         Size of the letters.
     """
 
-    view: Point
-    page: Point
+    view: Point = (1.0, 1.0)
+    page: Point = (1.0, 1.0)
     font: float = 16.0
+
+    def sized(self, style: Mapping[str, str]) -> Units:
+        """Units with the size of the letters that a style has."""
+        return replace(self, font=float(style.get("font-size", 16.0)))
 
     @property
     def diagonal(self) -> float:
         """Length that percentages of lengths in no direction are of."""
-        return math.sqrt((self.view[0] ** 2 + self.view[1] ** 2) / 2)
+        return math.hypot(*self.view) / math.sqrt(2)
 
-    def px(self, value: float, unit: str, whole: float) -> float | None:
-        """Number of a unit in user units; None for an unknown unit."""
-        unit = unit.lower()
-        if unit == "%":
-            return value * whole / 100
-        if unit in _FONTS:
-            return value * self.font * _FONTS[unit]
-        width, height = self.page
-        wholes = {"rem": 1600.0, "vw": width, "vi": width, "vh": height, "vb": height,
-                  "vmin": min(width, height), "vmax": max(width, height)}  # fmt: skip
-        if unit in wholes:
-            return value * wholes[unit] / 100
-        return value * _PX[unit] if unit in _PX else None
+    def length(self, text: str | None, whole: float) -> float | None:
+        """Length in user units, of ``whole`` if it is in percent; None if it is no finite one."""
+        try:
+            (token,) = tokens_of(text or "")
+            value = self.number(token, whole)
+        except NOT_UNDERSTOOD:
+            return None
+        return value if math.isfinite(value) else None
+
+    def place(self, x: str | None, y: str | None) -> complex:
+        """Place of two lengths; 0 for those that are none."""
+        return complex(
+            self.length(x, self.view[0]) or 0.0,
+            self.length(y, self.view[1]) or 0.0,
+        )
+
+    def number(self, token: Any, whole: float) -> float:
+        """Value of a number, of brackets or of a function, such as calc()."""
+        if token.type == "() block":
+            return self._sum(token.content, whole)
+        if token.type == "function":
+            values = [self._sum(one, whole) for one in arguments_of(token)]
+            return _FUNCTIONS[token.lower_name](*values)
+        unit = "%" if token.type == "percentage" else getattr(token, "lower_unit", "")
+        if unit in _UNITS:
+            return token.value * _UNITS[unit]
+        (width, height), font = self.page, self.font
+        sizes = {
+            "%": whole,
+            **dict.fromkeys(("em", "ic"), font * 100),
+            **dict.fromkeys(("ex", "ch"), font * 50),
+            **dict.fromkeys(("vw", "vi"), width),
+            **dict.fromkeys(("vh", "vb"), height),
+            "vmin": min(width, height),
+            "vmax": max(width, height),
+        }
+        return token.value * sizes[unit] / 100
+
+    def _sum(self, tokens: Sequence[Any], whole: float) -> float:
+        """Value of numbers with operators between them."""
+        shown = _shown(tokens)
+        terms = [self.number(shown[0], whole)]
+        for operator, token in zip(shown[1::2], shown[2::2], strict=True):
+            value = self.number(token, whole)
+            match operator.value:
+                case "+":
+                    terms.append(value)
+                case "-":
+                    terms.append(-value)
+                case "*":
+                    terms[-1] *= value
+                case "/":
+                    terms[-1] /= value
+                case _:
+                    raise ValueError("no operator")
+        return sum(terms)
 
 
-def length_of(text: str | None, whole: float, units: Units) -> float | None:
-    """Length in user units.
-
-    Parameters
-    ----------
-    text
-        The length as it is written; calc(), min(), max() and clamp() are computed.
-    whole
-        Length that a percentage is of.
-    units
-        Sizes that other units are of.
-
-    Returns
-    -------
-    float or None
-        The length; None if nothing, or no finite length, is written.
-    """
-    found = _LENGTH.fullmatch(text or "")
-    if found is not None:
-        value = units.px(float(found[1]), found[2], whole)
-    elif "(" in (text or ""):
-        value = _computed(text or "", whole, units)
-    else:
-        return None
-    return value if value is not None and math.isfinite(value) else None
-
-
-def _computed(text: str, whole: float, units: Units) -> float | None:
-    """Length of a function of CSS, such as calc()."""
-    import tinycss2
-
-    tokens = tinycss2.parse_component_value_list(text, skip_comments=True)
-    try:
-        return _sum([one for one in tokens if one.type != "whitespace"], whole, units, 0)
-    except (ValueError, ZeroDivisionError, OverflowError):
-        return None
-
-
-def _sum(tokens: Sequence[Any], whole: float, units: Units, depth: int) -> float:
-    """Sum of products that tokens of CSS write."""
-    total, sign, product, operator = 0.0, 1.0, None, "*"
-    for token in tokens:
-        if token.type == "literal" and token.value in "+-*/":
-            if product is None:
-                raise ValueError("an operator stands where a number is needed")
-            if token.value in "+-":
-                total += sign * product
-                sign = 1.0 if token.value == "+" else -1.0
-                product = None
-            operator = "*" if token.value in "+-" else token.value
-            continue
-        value = _operand(token, whole, units, depth)
-        if product is None:
-            product = value
+def arguments_of(function: Any) -> list[list[Any]]:
+    """Values of a function's arguments, which commas divide."""
+    found: list[list[Any]] = [[]]
+    for token in _shown(function.arguments):
+        if token == ",":
+            found.append([])
         else:
-            product = product / value if operator == "/" else product * value
-    if product is None:
-        raise ValueError("a number is missing")
-    return total + sign * product
+            found[-1].append(token)
+    return found
 
 
-def _operand(token: Any, whole: float, units: Units, depth: int) -> float:
-    """Value of a number, of brackets or of a function."""
-    if depth > _MOST_NESTED:
-        raise ValueError("brackets stand too deep")
-    if token.type in ("number", "percentage", "dimension"):
-        unit = {"number": "", "percentage": "%"}.get(token.type) or getattr(token, "unit", "")
-        value = units.px(token.value, unit, whole)
-        if value is None:
-            raise ValueError("a unit is unknown")
-        return value
-    if token.type == "() block":
-        inside = [one for one in token.content if one.type != "whitespace"]
-        return _sum(inside, whole, units, depth + 1)
-    if token.type != "function":
-        raise ValueError("it is not a number")
-    arguments: list[list[Any]] = [[]]
-    for one in token.arguments:
-        if one.type == "literal" and one.value == ",":
-            arguments.append([])
-        elif one.type != "whitespace":
-            arguments[-1].append(one)
-    values = [_sum(argument, whole, units, depth + 1) for argument in arguments]
-    match token.lower_name, len(values):
-        case "calc", 1:
-            return values[0]
-        case "min", _:
-            return min(values)
-        case "max", _:
-            return max(values)
-        case "clamp", 3:
-            return max(values[0], min(values[1], values[2]))
-        case _:
-            raise ValueError("a function is unknown")
+def is_length(text: str) -> bool:
+    """Tell whether a text is a length of CSS or SVG."""
+    return Units().length(text, 1.0) is not None
+
+
+def share_of(text: str) -> float:
+    """Opacity, from 0 to 1; 1 if it is not understood."""
+    value = Units().length(text, 1.0)
+    return 1.0 if value is None else min(max(value, 0.0), 1.0)
+
+
+def angle_of(text: str) -> float:
+    """Angle in degrees; 0 if it is not understood.
+
+    >>> angle_of("0.25turn"), angle_of("40grad"), angle_of("wide")
+    (90.0, 36.0, 0.0)
+    """
+    return Units().length(text, 0.0) or 0.0
 
 
 def numbers_of(text: str | None) -> list[float]:
@@ -179,63 +181,81 @@ def numbers_of(text: str | None) -> list[float]:
 
 @dataclass(frozen=True, slots=True)
 class AffineMap:
-    """An affine map, x' = a x + c y + e and y' = b x + d y + f, as SVG writes it."""
+    """An affine map of places as complex numbers: z becomes p z + q z̄ + r."""
 
-    a: float = 1.0
-    b: float = 0.0
-    c: float = 0.0
-    d: float = 1.0
-    e: float = 0.0
-    f: float = 0.0
+    p: complex = 1.0
+    q: complex = 0.0
+    r: complex = 0.0
+
+    def __call__(self, place: complex) -> complex:
+        """Transform a place."""
+        return self.p * place + self.q * place.conjugate() + self.r
 
     def __matmul__(self, first: AffineMap) -> AffineMap:
         """Map that does ``first``, and then this one."""
         return AffineMap(
-            self.a * first.a + self.c * first.b,
-            self.b * first.a + self.d * first.b,
-            self.a * first.c + self.c * first.d,
-            self.b * first.c + self.d * first.d,
-            self.a * first.e + self.c * first.f + self.e,
-            self.b * first.e + self.d * first.f + self.f,
+            self.p * first.p + self.q * first.q.conjugate(),
+            self.p * first.q + self.q * first.p.conjugate(),
+            self(first.r),
         )
 
-    def put(self, place: complex) -> complex:
-        """Transform a place, as a complex number."""
-        x, y = place.real, place.imag
-        return complex(self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f)
-
     @property
-    def scale(self) -> float:
-        """Factor of lengths: the root of that of areas."""
-        return math.sqrt(abs(self.a * self.d - self.b * self.c))
+    def _sizes(self) -> Point:
+        # Unlike abs(), they are infinite where they are too large.
+        return math.hypot(self.p.real, self.p.imag), math.hypot(self.q.real, self.q.imag)
 
     @property
     def largest(self) -> float:
         """Largest factor of lengths in any direction."""
-        total = self.a**2 + self.b**2 + self.c**2 + self.d**2
-        area = (self.a * self.d - self.b * self.c) ** 2
-        return math.sqrt((total + math.sqrt(max(total**2 - 4 * area, 0.0))) / 2)
+        return sum(self._sizes)
+
+    @property
+    def scale(self) -> float:
+        """Factor of lengths: the root of that of areas."""
+        p, q = self._sizes
+        return math.sqrt(abs(p - q) * (p + q))
 
     @property
     def keeps_circles(self) -> bool:
         """Tell whether a circle stays a circle."""
-        slack = 1e-6 * (abs(self.a) + abs(self.b) + abs(self.c) + abs(self.d))
-        turned = abs(self.a - self.d) <= slack and abs(self.b + self.c) <= slack
-        return turned or (abs(self.a + self.d) <= slack and abs(self.b - self.c) <= slack)
-
-    @property
-    def finite(self) -> bool:
-        """Tell whether all its numbers are finite."""
-        return all(map(math.isfinite, (self.a, self.b, self.c, self.d, self.e, self.f)))
+        return min(self._sizes) <= 1e-6 * self.largest
 
 
-def turned_by(degrees: float) -> AffineMap:
-    """Rotation about the origin, from +x towards +y."""
-    cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    return AffineMap(cos, sin, -sin, cos)
+def affine(a: float, b: float, c: float, d: float, e: float = 0.0, f: float = 0.0) -> AffineMap:
+    """Map of x' = a x + c y + e and y' = b x + d y + f, as SVG writes it."""
+    return AffineMap(complex(a + d, b - c) / 2, complex(a - d, b + c) / 2, complex(e, f))
 
 
-def transform_of(text: str | None, units: Units, box: Box) -> AffineMap | None:
+def turned(degrees: float, x: float = 0.0, y: float = 0.0) -> AffineMap:
+    """Rotation about a place, from +x towards +y."""
+    return about(complex(x, y), AffineMap(cmath.rect(1.0, math.radians(degrees))))
+
+
+def about(place: complex, inner: AffineMap) -> AffineMap:
+    """Map as it is about a place in place of the origin."""
+    return AffineMap(r=place) @ inner @ AffineMap(r=-place)
+
+
+def _slope(degrees: float) -> float:
+    return math.tan(math.radians(degrees))
+
+
+_TRANSFORMS: dict[str, Callable[..., AffineMap]] = {
+    "matrix": lambda a, b, c, d, e, f: affine(a, b, c, d, e, f),
+    "translate": lambda x, y=0.0: AffineMap(r=complex(x, y)),
+    "translatex": lambda x: AffineMap(r=x),
+    "translatey": lambda y: AffineMap(r=1j * y),
+    "scale": lambda x, y=None: affine(x, 0.0, 0.0, x if y is None else y),
+    "scalex": lambda x: affine(x, 0.0, 0.0, 1.0),
+    "scaley": lambda y: affine(1.0, 0.0, 0.0, y),
+    "rotate": turned,
+    "skew": lambda x, y=0.0: affine(1.0, _slope(y), _slope(x), 1.0),
+    "skewx": lambda x: affine(1.0, 0.0, _slope(x), 1.0),
+    "skewy": lambda y: affine(1.0, _slope(y), 0.0, 1.0),
+}
+
+
+def transform_of(text: str, units: Units, box: Box) -> AffineMap | None:
     """Map of a transform of SVG or CSS; None if it is not understood.
 
     Parameters
@@ -245,100 +265,41 @@ def transform_of(text: str | None, units: Units, box: Box) -> AffineMap | None:
     units, box
         Sizes that lengths are of, and the box that percentages are of.
     """
-    whole, at = AffineMap(), 0
-    text = (text or "").strip()
-    if text == "none":
-        return whole
-    while at < len(text):
-        found = _CALLED.match(text, at)
-        one = None if found is None else _step(found[1], found[2], units, box)
-        if found is None or one is None or not one.finite:
-            return None
-        whole, at = whole @ one, found.end()
-        at += len(text[at:]) - len(text[at:].lstrip())
-    return whole if whole.finite else None
-
-
-def _step(kind: str, inside: str, units: Units, box: Box) -> AffineMap | None:
-    """Map of one function of a transform; None if its numbers are not understood."""
-    words = [word for word in re.split(r"[\s,]+", inside.strip()) if word]
-    if kind in ("translate", "translateX", "translateY"):
-        wholes = (box[3],) if kind == "translateY" else box[2:]
-        lengths = [
-            length_of(word, whole, units) for word, whole in zip(words, wholes, strict=False)
-        ]
-        if None in lengths or not 1 <= len(words) <= (2 if kind == "translate" else 1):
-            return None
-        moves = [length or 0.0 for length in lengths]
-        return (
-            AffineMap(f=moves[0])
-            if kind == "translateY"
-            else AffineMap(e=moves[0], f=sum(moves[1:]))
-        )
-    if kind in ("rotate", "skew", "skewX", "skewY"):
-        angles = [angle_of(word) for word in words[: 1 if kind != "skew" else 2]]
-        places = [length_of(word, 0.0, units) for word in words[1:3]] if kind == "rotate" else []
-        if not angles or None in angles or None in places or len(places) == 1:
-            return None
-        degrees = [angle or 0.0 for angle in angles]
-        if kind == "rotate":
-            x, y = (place or 0.0 for place in places or (0.0, 0.0))
-            return AffineMap(e=x, f=y) @ turned_by(degrees[0]) @ AffineMap(e=-x, f=-y)
-        slopes = [math.tan(math.radians(angle)) for angle in degrees]
-        if kind == "skewY":
-            return AffineMap(b=slopes[0])
-        return AffineMap(c=slopes[0], b=sum(slopes[1:]))
-    numbers = numbers_of(inside)
-    if len(numbers) != len(words):
+    whole = AffineMap()
+    try:
+        for function in tokens_of(re.sub(r"\s+\(", "(", text)) or [None]:
+            if function == ",":
+                continue
+            kind = function.lower_name
+            tokens = [token for one in arguments_of(function) for token in one]
+            wholes = (box[3:] if kind == "translatey" else box[2:]) + (1.0,) * len(tokens)
+            numbers = map(units.number, tokens, wholes)
+            whole = whole @ _TRANSFORMS[kind](*numbers)
+    except NOT_UNDERSTOOD:
         return None
-    match kind, len(numbers):
-        case "matrix", 6:
-            return AffineMap(*numbers)
-        case "scale", 1 | 2:
-            return AffineMap(a=numbers[0], d=numbers[-1])
-        case "scaleX", 1:
-            return AffineMap(a=numbers[0])
-        case "scaleY", 1:
-            return AffineMap(d=numbers[0])
-        case _:
-            return None
-
-
-def angle_of(text: str) -> float | None:
-    """Angle in degrees; None if it is not understood.
-
-    >>> angle_of("0.25turn"), angle_of("40grad"), angle_of("wide")
-    (90.0, 36.0, None)
-    """
-    found = _LENGTH.fullmatch(text)
-    if found is None or found[2].lower() not in _ANGLES:
-        return None
-    return float(found[1]) * _ANGLES[found[2].lower()]
+    return whole
 
 
 def origin_of(text: str, units: Units, box: Box) -> complex | None:
     """Place of a transform-origin; None if it is not understood."""
     words = text.split()[:2]
-    if (words and words[0] in ("top", "bottom")) or (words[1:] and words[1] in ("left", "right")):
+    if words[0] in ("top", "bottom") or words[1:] in (["left"], ["right"]):
         words.reverse()
-    words = [*words, *["center"] * (2 - len(words))]
-    place: list[float] = []
-    for word, start, whole in zip(words, box[:2], box[2:], strict=True):
-        share = _KEYWORD_SHARES.get(word)
-        length = length_of(word, whole, units) if share is None else share * whole
-        if length is None:
-            return None
-        place.append(start + length)
-    return complex(*place)
+    words = [*words, "center"][:2]
+    x, y = (
+        units.length(_ORIGINS.get(word, word), whole)
+        for word, whole in zip(words, box[2:], strict=True)
+    )
+    return None if x is None or y is None else complex(box[0] + x, box[1] + y)
 
 
 def view_box_of(text: str | None) -> Box | None:
     """Left, top, width and height of an attribute viewBox; None if it cannot be one."""
     numbers = numbers_of(text)
-    if len(numbers) != 4 or not all(0 < size < 1e9 for size in numbers[2:]):
+    if len(numbers) != 4 or min(numbers[2:]) <= 0 or max(map(abs, numbers)) >= 1e9:
         return None
     left, top, width, height = numbers
-    return (left, top, width, height) if abs(left) < 1e9 and abs(top) < 1e9 else None
+    return left, top, width, height
 
 
 def fit(view: Box, size: Point, how: str) -> AffineMap:
@@ -356,22 +317,17 @@ def fit(view: Box, size: Point, how: str) -> AffineMap:
     left, top, width, height = view
     across, down = size[0] / width, size[1] / height
     words = how.split()
-    align = next((word for word in words if word != "defer"), "xMidYMid")
-    if align == "none":
-        return AffineMap(a=across, d=down, e=-left * across, f=-top * down)
-    one = max(across, down) if "slice" in words else min(across, down)
+    if "none" in words:
+        return affine(across, 0.0, 0.0, down, -left * across, -top * down)
+    align = next((word for word in words if word.startswith("x")), "xMidYMid")
+    factor = max(across, down) if "slice" in words else min(across, down)
     shares = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
     x, y = shares.get(align[1:4], 0.5), shares.get(align[5:8], 0.5)
-    return AffineMap(
-        a=one,
-        d=one,
-        e=x * (size[0] - width * one) - left * one,
-        f=y * (size[1] - height * one) - top * one,
-    )
+    start = complex(x * (size[0] - width * factor), y * (size[1] - height * factor))
+    return AffineMap(factor, 0.0, start - factor * complex(left, top))
 
 
-@dataclass(frozen=True, slots=True)
-class Color:
+class Color(NamedTuple):
     """A colour: red, green, blue and alpha, each from 0 to 1."""
 
     red: float
@@ -388,83 +344,27 @@ class Color:
 BLACK = Color(0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Paint:
-    """A paint as it is written.
-
-    Parameters
-    ----------
-    kind
-        "none", "color", "currentcolor", "context-fill", "context-stroke", or "url".
-    color
-        The colour; of "url", that of its fallback.
-    target
-        Id of the gradient or pattern.
-    otherwise
-        Paint of "url" where there is no such gradient: a kind, or empty for nothing said.
-    """
-
-    kind: str
-    color: Color = BLACK
-    target: str = ""
-    otherwise: str = ""
-
-
-def paint_of(text: str) -> Paint | None:
-    """Paint of a fill or a stroke; None if it is not understood."""
-    from vbraille.scene.svg.document import target_of
-
-    text = text.strip()
-    lower = text.lower()
-    if lower in ("none", "context-fill", "context-stroke", "currentcolor"):
-        return Paint(lower)
-    if lower.startswith("url("):
-        _, closed, rest = text.partition(")")
-        if not closed:
-            return None
-        fallback = paint_of(rest) if rest.strip() else None
-        color = BLACK if fallback is None else fallback.color
-        return Paint("url", color, target_of(text), "" if fallback is None else fallback.kind)
-    color = color_of(text)
-    return None if color is None else Paint("color", color)
-
-
+@lru_cache(maxsize=10_000)
 def color_of(text: str) -> Color | None:
     """Colour of CSS; None if it is not understood.
 
     >>> color_of("#f00"), color_of("rgb(100%, 0%, 50%)").blue, color_of("wood")
     (Color(red=1.0, green=0.0, blue=0.0, alpha=1.0), 0.5, None)
     """
-    import tinycss2
-    from tinycss2.color5 import parse_color
-
-    tokens = tinycss2.parse_component_value_list(text, skip_comments=True)
-    shown = [one for one in tokens if one.type != "whitespace"]
-    profile = len(shown) > 1 and getattr(shown[1], "lower_name", "") == "icc-color"
-    if len(shown) != 1 and not profile:
-        return None
     try:
-        found = parse_color(tinycss2.serialize(shown[:1]))
-        if found is None or isinstance(found, str):
+        token, *others = tokens_of(text)
+        if others and others[0].lower_name != "icc-color":
             return None
-        red, green, blue, alpha = (min(max(one or 0.0, 0.0), 1.0) for one in found.to("srgb"))
-    except (NotImplementedError, ValueError, TypeError):
+        parts: Any = parse_color(token)
+        return Color(*(min(max(one or 0.0, 0.0), 1.0) for one in parts.to("srgb")))
+    except (*NOT_UNDERSTOOD, NotImplementedError):
         return None
-    return Color(red, green, blue, alpha)
 
 
-def share_of(text: str | None) -> float | None:
-    """Opacity, from 0 to 1; None if it is not understood."""
-    units = Units((0.0, 0.0), (0.0, 0.0))
-    value = length_of(text, 1.0, units)
-    return None if value is None else min(max(value, 0.0), 1.0)
-
-
-def is_length(text: str) -> bool:
-    """Tell whether a text is a length of CSS or SVG."""
-    return length_of(text, 1.0, Units((1.0, 1.0), (1.0, 1.0))) is not None
-
-
-def one_of(*words: str) -> Callable[[str], bool]:
-    """Check of a value that is one of some words."""
-    return frozenset(words).__contains__
+def is_paint(text: str) -> bool:
+    """Tell whether a text is a paint of a fill or a stroke."""
+    if text.lower().startswith("url("):
+        _, closed, fallback = text.partition(")")
+        return bool(closed) and (not fallback.strip() or is_paint(fallback.strip()))
+    words = ("none", "currentcolor", "context-fill", "context-stroke")
+    return text.lower() in words or color_of(text) is not None

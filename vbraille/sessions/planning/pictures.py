@@ -12,8 +12,8 @@ from functools import lru_cache
 from msgspec import structs
 
 from vbraille.errors import InputError
-from vbraille.feeling.composing import compose
-from vbraille.feeling.loading import check_fits, shown_at
+from vbraille.pictures.composing import compose
+from vbraille.pictures.loading import check_fits, shown_at
 from vbraille.render.labels import Assets
 from vbraille.render.program import Program
 from vbraille.scene.locations import OpenedScene

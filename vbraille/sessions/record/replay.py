@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from vbraille.engine.record import FLAGS, FLOATS, INTS, LINE, Flag
 from vbraille.engine.ticks import recall, replay
 from vbraille.render import work
-from vbraille.render.program import Program, nothing, scratch_for
+from vbraille.render.program import Program, nothing
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import make_shown
 from vbraille.sessions.planning.trial import Stimulus, Trial
@@ -105,7 +105,7 @@ class Replay:
         frames = np.zeros((ticks.size, *display.shape))
         output, held, target = np.zeros((3, *display.shape))
         at, remembered = np.zeros((2, work.AT))
-        scratch, blank = scratch_for(display.shape), nothing(display)
+        blank = nothing(display)
         ints = np.zeros((ticks.size, len(INTS)), np.int64)
         floats = np.zeros((ticks.size, len(FLOATS)))
         for table, names in ((ints, INTS), (floats, FLOATS)):
@@ -123,5 +123,6 @@ class Replay:
             program = blank if resting or not line else self._program(line)
             part, into = (ints[first:end], floats[first:end]), frames[first:end]
             recall(program.numbers, *part, remembered)
-            replay(program.numbers, program.table, scratch, *part, at, output, held, target, into)
+            arrays = program.numbers, program.table, program.scratch
+            replay(*arrays, *part, at, output, held, target, into)
         return frames

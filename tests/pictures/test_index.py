@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.render.scene.twin import opacity
-from vbraille.feeling.index import SceneIndex
+from vbraille.pictures.index import SceneIndex
 from vbraille.render.labels import Assets
 from vbraille.scene.patterns import Circle, Dots, Fill, Group, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene

@@ -2,8 +2,8 @@
 
 import pytest
 
-from vbraille.feeling.checking import felt_advice
-from vbraille.feeling.loading import load_scene
+from vbraille.pictures.checking import felt_advice
+from vbraille.pictures.loading import load_scene
 from vbraille.render import MODELS
 from vbraille.scene.checking import check_scene
 
@@ -31,7 +31,7 @@ def advice(tmp_path, *elements, canvas="{ width_mm = 200, height_mm = 150 }"):
     path.write_text(f"canvas = {canvas}\nelements = [{', '.join(elements)}]\n")
     loaded = load_scene(path, STYLE)
     first = check_scene(loaded.opened, loaded.boxes())
-    return [*first.advice, *first.vibrations, *felt_advice(loaded)]
+    return [*first.advice, *felt_advice(loaded)]
 
 
 SOLID = 'fill = { texture = { kind = "uniform" } }'

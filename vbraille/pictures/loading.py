@@ -15,7 +15,7 @@ from vbraille.scene.patterns import Image, Label
 from vbraille.scene.reading import open_scene
 from vbraille.scene.traversal import each
 from vbraille.scene.zooming import levels, zoomed
-from vbraille.sounds import check_sound
+from vbraille.sounds import read_sound
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -114,7 +114,7 @@ def load_scene(path: Path | str, style: BrailleStyle) -> LoadedScene:
 def with_assets(opened: OpenedScene, style: BrailleStyle) -> LoadedScene:
     """Load the images of a scene that was opened, and translate its labels; see `load_scene`."""
     scene = opened.resolved
-    _check_sounds(opened)
+    _read_sounds(opened)
     kinds = {type(pattern) for pattern in each(*scene.elements)}
     if kinds.isdisjoint((Image, Label)):  # Places take as long as all the rest of it.
         return shown_at(opened, Assets(), opened.warnings)
@@ -131,13 +131,13 @@ def with_assets(opened: OpenedScene, style: BrailleStyle) -> LoadedScene:
     return shown_at(opened, Assets(bitmaps, written), tuple(notes))
 
 
-def _check_sounds(opened: OpenedScene) -> None:
+def _read_sounds(opened: OpenedScene) -> None:
     """Refuse files of sound that cannot be played."""
     for number, element in enumerate(opened.resolved.elements):
         for pattern in each(element):
             if pattern.sound:
                 try:
-                    check_sound(opened.folder / pattern.sound)
+                    read_sound(opened.folder / pattern.sound)
                 except InputError as error:
                     raise InputError(f"{opened.place(number)}: {error}") from None
 

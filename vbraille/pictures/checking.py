@@ -11,8 +11,8 @@ import numpy as np
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
-from vbraille.feeling.composing import compose
-from vbraille.feeling.index import distance_mm, is_open, label_of, outlines
+from vbraille.pictures.composing import compose
+from vbraille.pictures.index import distance_mm, is_open, label_of, outlines
 from vbraille.render.braille.models import STRESS2_8X8
 from vbraille.render.compiling import SceneMap
 from vbraille.scene.bounds import Box, bounds
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.feeling.loading import LoadedScene
+    from vbraille.pictures.loading import LoadedScene
     from vbraille.scene.patterns import AnyPattern, Fill
 
 _STEP_MM: Final = 0.25  # between the places at which it is looked what is felt

@@ -3,7 +3,7 @@
 import os
 import time
 
-from vbraille.feeling.loading import FileWatch
+from vbraille.pictures.loading import FileWatch
 
 SECOND_NS = 1_000_000_000
 
