@@ -306,7 +306,7 @@ def test_a_signal_is_drawn_against_the_velocity_and_told(suffix, call, tmp_path)
         assert b"right 1.00" in content
         assert ElementTree.fromstring(content) is not None
     if suffix == "csv":
-        assert content.startswith(b"speed_mm_s,direction_deg,value\n0,0,1\n")
+        assert content.startswith(b"x_mm_s,y_mm_s,value\n-6.25,-6.25,")
     assert "million" in call("map", path, "--signal", "onward", "--out", tmp_path / "b.png",
                              "--resolution", "500").err  # fmt: skip
 
