@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from vbraille.scene.signals import AnySignal
 
 _TOGETHER = {
-    "overwrite": "each over those before it",
+    "overwrite": "one on top of the other",
     "multiply": "each masking the others",
-    "add": "added up",
-    "weighted": "added up by weights",
+    "add": "added",
+    "weighted": "added by weights",
     "maximum": "the largest of them",
     "blend": "blended by a third",
 }
