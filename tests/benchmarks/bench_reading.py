@@ -106,7 +106,7 @@ def _frame() -> Result:
             changed = 0
             while not changed:
                 ticks = device.engine.poll()
-                new = ticks[(ticks["line"] == reader.surface.number)
+                new = ticks[(ticks["line"] == reader.number)
                             & (ticks["flags"] & int(Flag.CHANGED) > 0)]  # fmt: skip
                 changed = int(new["time_ns"][0]) if new.size else 0
                 time.sleep(0.001)

@@ -45,10 +45,8 @@ def test_a_latero_answers_at_its_port(call):
         assert b"blades at rest" in process.stdout.read()
 
 
-def test_keys_and_scripts_press_buttons(tmp_path):
-    script = tmp_path / "script.txt"
-    script.write_text("0.5s press 1\n1s release 1\n")
-    with program.Terminal("simulate", "serial", "--script", script) as terminal:
+def test_keys_press_buttons_and_turn_knobs():
+    with program.Terminal("simulate", "serial", "--press", "1@0.5s-1s, knob 2 1@1s") as terminal:
         terminal.until("keys: 1 to 8 press a button")
         terminal.type("2")
         terminal.until("button 2: pressed")
@@ -69,7 +67,7 @@ def test_keys_and_scripts_press_buttons(tmp_path):
         ("serial --drop 2", "--drop"),
         ("serial --stall soon", "--stall"),
         ("serial --defect no-watchdg", "did you mean no-watchdog"),
-        ("serial --script /nowhere", "/nowhere"),
+        ("serial --press knob", "knob"),
         ("serial --press 99@1s", "99"),
         ("serial --late 0.1", "--late"),
         ("latero --press 3@1s", "two buttons"),

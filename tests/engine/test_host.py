@@ -14,7 +14,7 @@ from vbraille.engine.host import Host, HostDiedError
 from vbraille.engine.record import Flag
 from vbraille.errors import InputError
 from vbraille.render import MODELS
-from vbraille.simulation.steering import BeAt, Hold, LetGo, ReadLine
+from vbraille.simulation.steering import GlideTo, Hold, LetGo, ReadLine
 
 MODEL = MODELS["stress2"]
 MASKS = np.array([1, 3, 9, 25, 17, 11, 27, 19, 10, 26], np.uint8)
@@ -64,7 +64,7 @@ def test_pausing_rests_and_a_second_reader_sees_the_same(host):
     picture, _ = line_for(host.display)
     reader = host.reader()
     host.show(picture, 2)
-    host.give(BeAt(30.0))
+    host.give(GlideTo(30.0, 0.0, 1000.0))
     polled(host, 0.6)
     host.paused = True
     ticks, _ = polled(host, 0.3)
@@ -94,7 +94,7 @@ def test_a_host_that_was_killed_is_told_and_begins_again():
     with Host("sim", MODEL.display, hand="still") as host:
         picture, _ = line_for(host.display)
         host.show(picture, 7)
-        host.give(BeAt(20.0))
+        host.give(GlideTo(20.0, 0.0, 1000.0))
         polled(host, 0.3)
         os.kill(host.process_id, signal.SIGKILL)
         with pytest.raises(HostDiedError):

@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.translate.reading import opened
-from vbraille.braille.geometry import STANDARD
-from vbraille.layout import Layout, Remarks, lay_out_text, locate, place_of, wrap_text
+from vbraille.layout import Layout, Remarks, wrap_text
 from vbraille.translate import Book, BrailleTable, choose_table, text_source
 
 TEXTS = Path(__file__).parents[2] / "texts"
@@ -192,14 +191,6 @@ def test_a_script_that_the_table_does_not_know_is_named_once():
     (note,) = book.notes()
     assert "Cyrillic" in note
     assert "‹language›" in note
-
-
-def test_a_place_on_the_surface_is_a_cell():
-    line = lay_out_text("the people", 20, TABLES["en-ueb-g2.ctb"]).first()
-    for cell in range(len(line)):
-        assert locate(line, STANDARD, place_of(cell, STANDARD)) == cell
-    assert locate(line, STANDARD, -1.0) is None
-    assert locate(line, STANDARD, STANDARD.cell_pitch_mm * len(line)) is None
 
 
 def test_a_text_of_a_program_s_own_is_wrapped():

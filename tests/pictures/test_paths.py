@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from vbraille.errors import InputError
-from vbraille.pictures.paths import PathOptions, path_of
+from vbraille.pictures.paths import path_of
 from vbraille.scene.scene import Canvas
-from vbraille.simulation.exploring import spiral, spot, wide
+from vbraille.simulation.exploring import Spot, Wide, spiral
+from vbraille.simulation.specs import parse_hand
 
 CANVAS = Canvas(width_mm=100, height_mm=60)
 
@@ -21,7 +22,7 @@ def test_the_wide_path_goes_round_and_then_inward_and_leaves_no_place_out(size):
     x, y = spiral(*size, 10)
     assert list(zip(x[:4], y[:4], strict=True)) == [(0, 0), (width, 0), size, (0, height)]
     assert (x.min(), x.max(), y.min(), y.max()) == (0, width, 0, height)
-    course = wide(*size, spacing_mm=10)
+    course = Wide(10).over(*size)
     t_s = np.arange(0, course.duration_s, 0.005)
     gone = np.interp(t_s, course.t_s, course.x_mm), np.interp(t_s, course.t_s, course.y_mm)
     for place in np.random.default_rng(1).uniform((0, 0), size, (200, 2)):
@@ -30,44 +31,47 @@ def test_the_wide_path_goes_round_and_then_inward_and_leaves_no_place_out(size):
 
 
 def test_the_spot_path_fills_the_square_about_its_place():
-    course = spot(40, 30, radius_mm=5, duration_s=20)
-    assert abs(course.x_mm - 40).max() == pytest.approx(5, abs=0.01)
-    assert abs(course.y_mm - 30).max() == pytest.approx(5, abs=0.01)
-    counts, *_ = np.histogram2d(course.x_mm, course.y_mm, bins=5)
+    course = Spot((40, 30)).over(100, 60)
+    assert abs(course.x_mm - 40).max() == pytest.approx(5, abs=0.05)
+    assert abs(course.y_mm - 30).max() == pytest.approx(5, abs=0.05)
+    counts, *_ = np.histogram2d(course.x_mm, course.y_mm, bins=4)
     assert counts.min() > 0
     speed = lengths(course) / np.diff(course.t_s)
     assert speed.max() == pytest.approx(60, rel=0.01)
+    assert Spot().over(100, 60).x_mm.mean() == pytest.approx(50, abs=0.5)
+
+
+def path(spec, rate_hz=500.0):
+    return path_of(parse_hand(spec), CANVAS, 8.4, rate_hz)
 
 
 def test_poses_are_those_of_the_path_at_even_times(tmp_path):
-    path = path_of(PathOptions("wide:20"), CANVAS, 8.4, 500.0)
-    np.testing.assert_allclose(np.diff(path.t_s), 1 / 500)
-    assert (path.x_mm[0], path.y_mm[0]) == (0, 0)
-    assert path.x_mm.max() == pytest.approx(100, abs=0.2)
-    recorded = tmp_path / "hand.csv"
-    recorded.write_text("t_s,x_mm,y_mm,theta_deg\n0,0,5,0\n0.4,40,9,90\n")
-    path = path_of(PathOptions(f"recorded:{recorded}"), CANVAS, 8.4, 100.0)
-    assert path.x_mm[[0, -1]].tolist() == pytest.approx([4.2, 44.2])
-    assert path.y_mm[[0, -1]].tolist() == pytest.approx([5, 9])
-    assert path.theta_rad[-1] == pytest.approx(np.pi / 2)
-    recorded.write_text("0,0\n0.4,40\n")
-    path = path_of(PathOptions(f"recorded:{recorded}"), CANVAS, 8.4, 100.0)
-    assert set(path.y_mm) == {30.0}
+    wide = path("wide:20")
+    np.testing.assert_allclose(np.diff(wide.t_s), 1 / 500)
+    assert (wide.x_mm[0], wide.y_mm[0]) == pytest.approx((0, 0))
+    assert wide.x_mm.max() == pytest.approx(100, abs=0.2)
+    csv = tmp_path / "hand.csv"
+    csv.write_text("t_s,x_mm,y_mm,theta_deg\n0,0,5,0\n0.4,40,9,90\n")
+    recorded = path(f"recorded:{csv}", 100.0)
+    assert recorded.x_mm[[0, -1]].tolist() == pytest.approx([4.2, 44.2])
+    assert recorded.y_mm[[0, -1]].tolist() == pytest.approx([5, 9])
+    assert recorded.theta_rad[-1] == pytest.approx(np.pi / 2)
+    csv.write_text("0,0\n0.4,40\n")
+    assert set(path(f"recorded:{csv}", 100.0).y_mm) == {30.0}
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("spec", "said"),
     [
-        (PathOptions("round"), "the hand 'round' does not go over a picture"),
-        (PathOptions("wide", radius=3.0), "is not for the hand wide"),
-        (PathOptions("spot:3;4"), "the place is '3;4'; write it as X,Y in mm"),
-        (PathOptions("spot:3,nan"), "place is 'nan'; give a number in mm"),
-        (PathOptions("wide:0.1"), "spacing is 0.1 mm; it must be 0.5 to 1000 mm"),
-        (PathOptions("wide", speed=0.0), "speed is 0 mm/s"),
-        (PathOptions("spot", seconds=1e9), "duration is 1e\\+09 s"),
-        (PathOptions("recorded:none.csv"), "there is no file none.csv"),
+        ("round", "round"),
+        ("sweep:60", "does not go over a picture"),
+        ("spot:3;4", "spot:3;4"),
+        ("spot:3", "spot:X,Y"),
+        ("spot:3,nan", "place is nan mm"),
+        ("wide:0.1", "spacing is 0.1 mm; it must be 0.5 to 1000 mm"),
+        ("recorded:none.csv", "there is no file none.csv"),
     ],
 )
-def test_what_is_no_path_is_refused(options, said):
+def test_what_is_no_path_is_refused(spec, said):
     with pytest.raises(InputError, match=said):
-        path_of(options, CANVAS, 8.4, 1000.0)
+        path(spec)

@@ -104,7 +104,7 @@ def book_with_figure(model):
     source = open_source("texts/scenes/pond.md")
     reading = Reading(source, model, hand="sweep:1")
     figures = BookFigures(reading.book.source, Path("texts/scenes"), lambda: model.style, print)
-    reading.reader.figures = reading.reader.surface._figures = figures
+    reading.reader.figures = figures
     return reading
 
 
@@ -114,7 +114,7 @@ def test_a_figure_stands_below_its_line_and_joins_the_page():
         while "below this line" not in " ".join(said):
             assert reading.press("n") != ["no next line"], said
             said += reading.run(0.1)
-        surface = reading.reader.surface
+        surface = reading.reader
         reading.until(lambda: surface.figured)
         row = next(row for row in range(surface.rows) if surface.has_free(row))
         reading.finger(20.0, (row + 2) * reading.reader.style.geometry.line_pitch_mm)

@@ -48,13 +48,13 @@ def test_keys_do_not_leave_the_lines_that_are_read():
 
 def test_a_line_that_is_longer_than_the_hand_goes_comes_in_parts():
     with Reading(WORDS, width=60, hand="sweep:1") as reading:
-        width = reading.reader.surface.width
+        width = reading.reader.width
         assert reading.press("right") == [f"from cell {width + 1}"]
         reading.press("right", "right")
         assert reading.line == 2
         reading.press("left")
         assert reading.line == 1
-        assert reading.reader.surface.part.first == 60 // width * width
+        assert reading.reader.part.first == 60 // width * width
 
 
 def test_what_is_under_the_finger_stays_there_when_distances_change():
@@ -163,15 +163,15 @@ def test_a_jump_brings_its_line_into_the_row_of_the_finger(key):
         reading.press(key)
         wanted = {"n": before + 1, "p": before - 1, "<": 1}
         assert reading.line == wanted.get(key, reading.reader.layout.count())
-        assert reading.reader.surface.row == 5
+        assert reading.reader.row == 5
         reading.run(0.5)
-        assert reading.reader.surface.row == 5
+        assert reading.reader.row == 5
 
 
 def test_a_finger_that_stays_below_the_page_turns_it_once():
     with Reading(ROWS, TWO, hand="sweep:1") as reading:
-        surface, pitch_mm = reading.reader.surface, reading.reader.style.geometry.line_pitch_mm
-        rows = surface.rows
+        reader, pitch_mm = reading.reader, reading.reader.style.geometry.line_pitch_mm
+        rows = reader.rows
         reading.finger(20.0, 0.5 * pitch_mm)
         below_mm = reading.device.display.height_mm - 1
         said = reading.finger(20.0, below_mm) + reading.run(2.0)
@@ -184,13 +184,13 @@ def test_a_finger_that_stays_below_the_page_turns_it_once():
 
 def test_pages_turn_by_keys_and_the_first_is_a_whole_one():
     with Reading(ROWS, TWO, hand="sweep:1") as reading:
-        rows = reading.reader.surface.rows
+        rows = reading.reader.rows
         assert reading.press("[") == ["no previous page"]
         assert reading.press("]")[0] == f"page: lines {rows + 1} to {2 * rows}"
         assert reading.press("[")[0] == f"page: lines 1 to {rows}"
         while reading.press("]")[0] != "no next page":
             pass
-        assert reading.reader.surface.lines[-1] == reading.reader.layout.last()
+        assert reading.reader.lines[-1] == reading.reader.layout.last()
 
 
 def test_straying_and_its_band_are_changed_and_taken_back():

@@ -12,7 +12,7 @@ from tests.tiers import by_tier
 from vbraille.carriers import latero as arms
 from vbraille.devices.latero.wire import parse_answer
 from vbraille.errors import InputError
-from vbraille.simulation.controls import parse_presses, parse_script
+from vbraille.simulation.controls import parse_moves
 from vbraille.simulation.lateroboard import LateroBoard
 from vbraille.simulation.laterosim import OFFSETS, LateroCarriage, LateroSimulator
 from vbraille.simulation.specs import parse_hand
@@ -142,7 +142,7 @@ def test_levels_beyond_rest_are_counted():
 
 def test_its_buttons_are_low_while_they_are_pressed():
     with (
-        simulated(script=parse_presses("1@0s-60s")) as latero,
+        simulated(script=parse_moves("1@0s-60s")) as latero,
         TableClient(latero._socket.getsockname()[1]) as client,
     ):
         until(lambda: client.full([150] * 64)[4] == 0x0020)
@@ -153,7 +153,7 @@ def test_a_script_and_keys_press_its_buttons():
     said = []
     with (
         simulated(
-            script=parse_script("0s press 1\n0s press 2\n", "script"),
+            script=parse_moves("1@0s-60s,2@0s-60s"),
             keys=lambda: next(keys, []),
             say=said.append,
         ) as latero,

@@ -1,6 +1,6 @@
 """Cells on a virtual page: lines of any width, and files of them."""
 
-from vbraille.layout.lines import Layout, Line, indents, locate, place_of
+from vbraille.layout.lines import Layout, Line
 from vbraille.layout.texts import cells_per_line, lay_out_text, wrap_text
 from vbraille.translate.book import Remarks
 
@@ -9,9 +9,6 @@ __all__ = [
     "Line",
     "Remarks",
     "cells_per_line",
-    "indents",
     "lay_out_text",
-    "locate",
-    "place_of",
     "wrap_text",
 ]

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from array import array
 from bisect import bisect_right
-from collections import OrderedDict
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +19,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.braille.geometry import Geometry
     from vbraille.translate.blocks import Block
     from vbraille.translate.book import Book
 
@@ -130,25 +127,6 @@ class Line:
         return "".join(before) + text[at:].split(None, 1)[0]
 
 
-def locate(line: Line, geometry: Geometry, x_mm: float) -> int | None:
-    """Cell of a line at a place on the surface; None if there is none.
-
-    Parameters
-    ----------
-    x_mm
-        Place on the surface: for a column of actuators, the carriage's position plus the column's
-        offset. The space after a cell counts as the cell's.
-    """
-    cell = math.floor(x_mm / geometry.cell_pitch_mm)
-    return cell if 0 <= cell < len(line) else None
-
-
-def place_of(cell: int, geometry: Geometry) -> float:
-    """Middle of a cell of a line on the surface, in mm; `locate` finds the cell there."""
-    middle = (geometry.dot_spacing_mm + geometry.dot_width_mm) / 2
-    return cell * geometry.cell_pitch_mm + min(middle, geometry.cell_pitch_mm / 2)
-
-
 def indents(block: Block, width: int) -> tuple[int, int]:
     """Numbers of blank cells before a block's first line and before its other lines.
 
@@ -191,7 +169,7 @@ class Layout:
 
     def __init__(self, book: Book, width: int) -> None:
         self.book, self.width = book, width
-        self._recent: OrderedDict[int, list[Line]] = OrderedDict()
+        self._lines = lru_cache(_REMEMBERED)(lambda block: lay_out(block, book, width))
         self._before = array("q", [0])  # numbers of lines before each block, as far as counted
 
     def first(self) -> Line | None:
@@ -266,13 +244,7 @@ class Layout:
 
     def lines_of(self, block: Block) -> list[Line]:
         """Lines of a block."""
-        found = self._recent.get(block.number)
-        if found is None:
-            found = lay_out(block, self.book.cells(block), self.width, self.book)
-            self._recent[block.number] = found
-            if len(self._recent) > _REMEMBERED:
-                self._recent.popitem(last=False)
-        return found
+        return self._lines(block)
 
     def _count_on(self) -> bool:
         """Count the lines of one more block; tell whether there was one."""
@@ -287,30 +259,20 @@ class Layout:
             yield from self.lines_of(block)[::way]
 
 
-def lay_out(block: Block, cells: Cells, width: int, book: Book | None = None) -> list[Line]:
-    """Break a block into lines.
-
-    Parameters
-    ----------
-    block, cells
-        Block, and its cells by their places in the source.
-    width
-        Number of cells in a line.
-    book
-        Book whose table says how a word or a number goes on that must be cut.
-    """
-    if block.kind is BlockKind.PAGE and block.cells is None:
-        if not len(cells):
+def lay_out(block: Block, book: Book, width: int) -> list[Line]:
+    """Lines of a block of a book, of a number of cells each."""
+    cells = book.cells(block)
+    if block.kind is BlockKind.PAGE:
+        if block.cells is not None or not len(cells):
             return []  # the page has no number
         rule = np.frombuffer(_RULE[: max(width - len(cells), 0)], np.uint8)
         starts = np.concatenate((np.full(rule.size, cells.starts[0]), cells.starts))
         cells = Cells(np.concatenate((rule, cells.masks)), starts, cells.end)
-    elif block.kind is BlockKind.PAGE:
-        return []
     text, indent, runover = block.text, *indents(block, width)
     places = (cells.starts - block.start).tolist()
-    table = None if book is None or block.cells is not None else book.table
-    divide = None if table is None else partial(table.divide, text)
+    divide = None  # what is written in cells is cut as it is
+    if block.cells is None and book.table is not None:
+        divide = partial(book.table.divide, text)
     pieces = wrap(cells.masks.tobytes(), places, text, width, indent, runover, divide)
     edges = [0, *(_edge(text, places, cells, piece) for piece in pieces[1:]), len(text)]
     return [

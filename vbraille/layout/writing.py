@@ -57,11 +57,8 @@ def kept_pages(book: Book, width: int | None = None) -> Iterator[list[bytes]]:
             page = []
             continue
         page = [] if page is None else page
-        cells = book.cells(block)
-        masks = cells.masks.tobytes()
-        if block.continues and page and width is None:
-            page[-1] += masks
-        elif width is None or len(masks) <= width:
+        masks = book.cells(block).masks.tobytes()
+        if width is None or len(masks) <= width:
             page.append(masks)
         else:
             places = range(len(masks))

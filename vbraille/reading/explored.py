@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from vbraille.display import Display
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.outputs import Output
-    from vbraille.render import BrailleStyle
 
 _PAUSE = "pause: rest the array at once, or go on", "space"
 
@@ -47,6 +47,8 @@ class Explored:
         Whether keys only say what they do, and whether exploring is over.
     inside : Explored or None
         What is felt in its place, such as a figure of a book.
+    style : BrailleStyle or None
+        Style of its braille; None if it has none.
     hopeless : str or None
         Reason why exploring will not come to its end without help; None without one.
     """
@@ -54,6 +56,7 @@ class Explored:
     where = Where.ANYWHERE
     doing = "reading"
     hopeless: str | None = None
+    style: Any = None
 
     def __init__(
         self, device: ReadingDevice, outputs: Sequence[Output], key_set: str = "usual"
@@ -82,9 +85,9 @@ class Explored:
     # What outputs show of it
 
     @property
-    def style(self) -> BrailleStyle | None:
-        """Style of its braille; None if it has none."""
-        return None
+    def display(self) -> Display:
+        """The actuators and the carriage."""
+        return self.device.display
 
     @property
     def text(self) -> str:

@@ -112,14 +112,14 @@ def _turn_band(reader: Reader, by: float) -> None:
     before = reader.style.straying.band
     band = round(min(max(before + by, 0.0), 1.0), 2)
     said = f"band: {band:g} line pitches"
-    if band == before and reader.surface.rows:
+    if band == before and reader.rows:
         reader.refuse(f"{said} is the {'most' if by > 0 else 'least'}")
     else:
         _stray(reader, said, band=band)
 
 
 def _stray(reader: Reader, said: str, **changes: Any) -> None:
-    if reader.surface.rows:
+    if reader.rows:
         _tune(reader, said, straying=replace(reader.style.straying, **changes))
     else:
         reader.refuse("only one line is shown; nothing to change")

@@ -106,7 +106,7 @@ class BookFigures:
         """Begin to compile a page with its figures, which `take` shows when it is ready."""
         placed, masks, style = list(self.on(surface)), surface.masks, surface.style
         if placed:
-            display, start_mm = surface.display, surface.part.start_mm
+            display = surface.display
 
             def make() -> Program:
                 # It loads numba, which a reader who comes to no figure does not need.
@@ -114,7 +114,7 @@ class BookFigures:
                 from vbraille.render.figures import FigureAt, page_with_figures
 
                 figures = [FigureAt(one.scene, (0.0, top), one.assets) for one, top in placed]
-                scene, assets = page_with_figures(masks, style, figures, start_mm=start_mm)
+                scene, assets = page_with_figures(masks, style, figures)
                 return compile_scene(scene, display, assets, rate_hz=display.rate_hz)
 
             self._making = surface.number, self._maker.submit(make)
@@ -132,7 +132,9 @@ class BookFigures:
 
     def here(self, surface: Any, pose: Pose | None) -> tuple[str, str] | None:
         """Titles of the figure at a pose, and of its element there; None if none is there."""
-        for figure, top_mm in () if pose is None else self.on(surface):
+        if pose is None:
+            return None
+        for figure, top_mm in self.on(surface):
             canvas, x_mm, y_mm = figure.scene.canvas, pose.x_mm, pose.y_mm - top_mm
             if 0 <= x_mm <= canvas.width_mm and 0 <= y_mm <= canvas.height_mm:
                 if figure.title not in self._indices:

@@ -141,14 +141,13 @@ class LiveOutput(Output):
     def _book(self, reader: Any) -> dict[str, Any]:
         from vbraille.reading.feeling import mapping_said
 
-        style, surface, source = reader.style, reader.surface, reader.book.source
+        style, source = reader.style, reader.book.source
         geometry = style.geometry
         beside = None
         if reader.beside_mapping is not None:
             other = style.replace(mapping=reader.beside_mapping)
-            masks, start_mm = surface.part.masks, surface.part.start_mm
             words = mapping_said(other.mapping)
-            beside = beside_shown(other, self._device.display, masks, start_mm, words)
+            beside = beside_shown(other, self._device.display, reader.part.masks, 0.0, words)
         return {
             "title": source.title or Path(source.name).name,
             "geometry": geometry_shown(geometry),
@@ -166,16 +165,15 @@ class LiveOutput(Output):
             "beside": beside,
             "figures": [
                 replace(self._drawing(figure, 0), top_mm=-top_mm)
-                for figure, top_mm in (reader.figures.on(surface) if surface.figured else ())
+                for figure, top_mm in (reader.figures.on(reader) if reader.figured else ())
             ],
         }  # fmt: skip
 
     def _lines(self, reader: Any) -> list[LineShown]:
         """Lines to be drawn, from top to bottom: the page, or the line and some around it."""
-        surface = reader.surface
-        pitch_mm, part = reader.style.geometry.line_pitch_mm, surface.part
-        rows = enumerate(surface.parts)
-        if not surface.rows:
+        pitch_mm, part = reader.style.geometry.line_pitch_mm, reader.part
+        rows = enumerate(reader.parts)
+        if not reader.rows:
             steps = range(-_BEFORE, _AFTER + 1)
             near = ((step, reader.layout.beside(part.line, step)) for step in steps)
             rows = (
@@ -183,7 +181,7 @@ class LiveOutput(Output):
             )
         return [
             line_shown(
-                each.line, first=each.first, count=len(each), start_mm=each.start_mm,
+                each.line, first=each.first, count=len(each),
                 top_mm=row * pitch_mm, number=each.line.id & _NUMBER, under=each is part,
             )
             for row, each in rows
@@ -239,7 +237,7 @@ class LiveOutput(Output):
             "lines": [
                 LineShown(
                     row + 1, texts[row * cells : (row + 1) * cells], 0.0, row * pitch_mm,
-                    masks.tolist(), places, row == screen.surface.row,
+                    masks.tolist(), places, row == screen.row,
                 )
                 for row, masks in enumerate(screen.talk.masks)
             ],

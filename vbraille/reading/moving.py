@@ -52,7 +52,7 @@ def pan_left(reader: Reader) -> None:
 
 def _pan(reader: Reader, step: int) -> None:
     if reader.pan(step):
-        reader.say(f"from cell {reader.surface.part.first + 1}")
+        reader.say(f"from cell {reader.part.first + 1}")
     else:
         _go(reader, step, at_end=step < 0)
 
@@ -105,7 +105,7 @@ def skip_blank(reader: Reader) -> None:
 def surface_page(reader: Reader, step: int) -> None:
     if not reader.turn_page(step):
         reader.refuse("no next page" if step > 0 else "no previous page")
-    elif not reader.surface.rows:
+    elif not reader.rows:
         reader.announce()
 
 

@@ -151,7 +151,7 @@ class Picture(Explored):
     @property
     def flat(self) -> bool:
         """Tell whether the carriage goes along y, too."""
-        return self.device.display.height_mm > 0
+        return self.display.height_mm > 0
 
     @property
     def place(self) -> Point | None:
@@ -181,7 +181,7 @@ class Picture(Explored):
     def _made(self, loaded: LoadedScene, zoom: float) -> tuple[LoadedScene, Program]:
         """Picture at a zoom, with its program."""
         shown = loaded.zoomed(zoom)
-        display = self.device.display
+        display = self.display
         program = compose(shown, display, rate_hz=display.rate_hz, contrast=self._contrast)
         return shown, program
 
@@ -309,7 +309,7 @@ class Picture(Explored):
 
     def _glide(self, to: Point, speed_mm_s: float) -> None:
         """Have a simulated hand glide to a place of the canvas."""
-        display = self.device.display
+        display = self.display
         x_mm, y_mm = self.aperture.of_carriage(*to)
         half_mm = display.span_mm / 2
         x_mm = min(max(x_mm, -half_mm), display.travel_mm - half_mm)
@@ -530,7 +530,7 @@ class Picture(Explored):
         """Read the file again, and show what it holds now; what is wrong with it is said."""
         try:
             loaded = load_scene(self.loaded.opened.path, self.device.model.style)
-            check_fits(loaded.scene, self.device.display)
+            check_fits(loaded.scene, self.display)
             made = self._made(loaded, self.aperture.zoom)
         except InputError as error:
             self.say(f"not reloaded: {error}; the picture is as it was", Cue.NOT_FOUND)

@@ -9,7 +9,6 @@ from vbraille.braille.cells import dots_of
 from vbraille.errors import InputError
 from vbraille.layout import Layout, cells_per_line
 from vbraille.reading.commands import Where
-from vbraille.reading.explored import Explored
 from vbraille.reading.hand import HELD, HandWatch, too_fast_note
 from vbraille.reading.outputs import Cue
 from vbraille.reading.places import around, nearest
@@ -36,7 +35,7 @@ _KEPT_EVERY_S, _WATCHED_EVERY_S = 0.3, 0.5
 _TRAIL = 100  # places that are kept to go back to
 
 
-class Reader(Explored):
+class Reader(Surface):
     """A book, the line of it under the hand, and the style that it is shown in.
 
     Parameters
@@ -66,8 +65,6 @@ class Reader(Explored):
 
     Attributes
     ----------
-    surface : Surface
-        What lies under the hand.
     back : list[int]
         Places before jumps.
     undo : list[BrailleStyle]
@@ -100,10 +97,10 @@ class Reader(Explored):
         save: Callable[[BrailleStyle], str] | None = None,
         changed: Callable[[], Book | None] = lambda: None,
     ) -> None:
-        super().__init__(device, outputs, key_set)
-        self.layout, self.kept, self.save, self.figures = layout, kept, save, figures
+        style = device.model.style
+        super().__init__(device, outputs, key_set, style, figures=figures, by_hand=by_hand)
+        self.layout, self.kept, self.save, self.attended = layout, kept, save, attended
         self.first, self.last = lines
-        self.attended, self.by_hand = attended, by_hand
         self._fixed, self._echo, self._changed = fixed, echo, changed
         self.back: list[int] = []
         self.undo: list[BrailleStyle] = []
@@ -121,9 +118,6 @@ class Reader(Explored):
         self.beside_mapping: Mapping | None = None  # that the live view shows beside the array
         self.lines_read = 0
         self._too_fast_said = self._figure_due = False
-        self.surface = Surface(
-            device, device.model.style, self._neighbour, figures, by_hand=by_hand
-        )
         self.show(self._line_to_begin())
 
     def _line_to_begin(self) -> Line:
@@ -148,14 +142,9 @@ class Reader(Explored):
         return self.layout.book
 
     @property
-    def style(self) -> BrailleStyle:
-        """Style that lines are shown in."""
-        return self.surface.style
-
-    @property
     def line(self) -> Line:
         """Line under the hand."""
-        return self.surface.part.line
+        return self.part.line
 
     @property
     def text(self) -> str:
@@ -172,12 +161,12 @@ class Reader(Explored):
         """Cell of the line under the finger; None if there is none."""
         if self.device.x_mm is None or self.figure_here:
             return None
-        return self.surface.part.cell_at(self.device.x_mm, self.style.geometry)
+        return self.part.cell_at(self.device.x_mm, self.style.geometry)
 
     @property
     def place(self) -> int:
         """Place in the text of the cell under the finger, or of the first that is shown."""
-        for cell in (self.cell, max(self.surface.part.first, 0)):
+        for cell in (self.cell, max(self.part.first, 0)):
             span = None if cell is None else self.line.source(cell)
             if span is not None:
                 return span[0]
@@ -192,9 +181,9 @@ class Reader(Explored):
     @property
     def figure_here(self) -> tuple[str, str] | None:
         """Titles of the figure of the page under the finger, and of its part there."""
-        if self.figures is None or not self.surface.figured:
+        if self.figures is None or not self.figured:
             return None
-        return self.figures.here(self.surface, self.device.pose)
+        return self.figures.here(self, self.device.pose)
 
     def named(self) -> str:
         """Name of the line in sentences, such as "line 12"."""
@@ -213,9 +202,10 @@ class Reader(Explored):
 
     def beside(self, step: int) -> Line | None:
         """Line after the one under the hand, or before it where the step is -1."""
-        return self._neighbour(self.line, step)
+        return self.neighbour(self.line, step)
 
-    def _neighbour(self, line: Line, step: int) -> Line | None:
+    def neighbour(self, line: Line, step: int) -> Line | None:
+        """Line after one, or before it, of those that are read."""
         following = self.layout.beside(line, step)
         while following is not None and self.skip_blank and not following.masks.any():
             following = self.layout.beside(following, step)
@@ -231,24 +221,23 @@ class Reader(Explored):
 
     def show(self, line: Line, cell: int = 0) -> None:
         """Put the part of a line with a cell under the hand."""
-        self._put(Part(line, self.surface.width).at(cell))
+        self._put(Part(line, self.width).at(cell))
 
     def _put(self, part: Part) -> None:
-        before = self.surface.parts and self.line
-        self.surface.put(part)
+        before = self.parts and self.line
+        self.put(part)
         self._arrive(another=before != part.line)
 
     def _arrive(self, *, another: bool = True) -> None:
         """Tell of the line that is under the hand now."""
-        surface = self.surface
         self.finished = False
         self._unkept = self.line
-        self._cells_due = max(len(surface.part), 1)
+        self._cells_due = max(len(self.part), 1)
         self._watch = HandWatch(
-            surface.display.span_mm,
-            surface.end_mm,
+            self.display.span_mm,
+            self.end_mm,
             self.named(),
-            by_hand=self.by_hand and not surface.rows,
+            by_hand=self.by_hand and not self.rows,
             otherwise="n brings the next line" if self.attended else "Ctrl-C stops",
         )
         if another:
@@ -273,10 +262,7 @@ class Reader(Explored):
         line, cell = found
         if what and self._echo != "none":
             self.say(what)
-        if line == self.line and self.cell is not None:
-            self._put_under(line, cell)
-        else:
-            self.show(line, cell)
+        self._bring(line, cell, under=line == self.line and self.cell is not None)
         self._found = place
         self.announce(what)
 
@@ -284,26 +270,15 @@ class Reader(Explored):
         self.back.append(self.place)
         del self.back[:-_TRAIL]
 
-    @property
-    def _share(self) -> float | None:
-        """Share of the cell under the finger that is to the left of it; None if there is none."""
-        x_mm = self.device.x_mm
-        if x_mm is None or self.cell is None:
-            return None
-        return (x_mm - self.surface.part.start_mm) / self.style.geometry.cell_pitch_mm % 1
-
-    def _put_under(self, line: Line, cell: int, share: float | None = 0.0) -> None:
-        """Put a cell of a line under the finger; where there was none, its part of the line."""
-        x_mm = self.device.x_mm
-        if share is None or x_mm is None:
-            self.show(line, cell)
-        else:
-            pitch_mm = self.style.geometry.cell_pitch_mm
-            self._put(Part(line, self.surface.width).under(cell, x_mm, pitch_mm, share))
+    def _bring(self, line: Line, cell: int, *, under: bool) -> None:
+        """Show a cell of a line, under the finger or in its part of the line."""
+        part, x_mm = Part(line, self.width), self.device.x_mm
+        fits = under and x_mm is not None
+        self._put(part.under(cell, x_mm, self.style.geometry) if fits else part.at(cell))
 
     def follow(self, ticks: NDArray[np.void]) -> None:
         """Look where the hand went, and give what follows once it is done with this."""
-        followed = self.surface.follow(ticks)
+        followed = self.track(ticks)
         if followed is None:
             self._watch.rest()
             return
@@ -322,25 +297,25 @@ class Reader(Explored):
             self._say_of_hand(ticks)
 
     def _hand_done(self, tick: np.void) -> bool:
-        felt = int(tick["line"]) == self.surface.number and not int(tick["flags"]) & HELD
+        felt = int(tick["line"]) == self.number and not int(tick["flags"]) & HELD
         return felt and self.device.hand_done
 
     def _say_of_hand(self, ticks: NDArray[np.void]) -> None:
         """Say what keeps the hand from the end of the line, and whether it is too fast."""
-        reached, patient = self.surface.reached, self.device.held
+        reached, patient = self.reached, self.device.held
         for sentence in self._watch.watch(ticks, reached=reached, patient=patient):
             self.say(sentence)
         self.hopeless = self._watch.hopeless
-        if not (self._too_fast_said or reached or patient or self.surface.figured):
+        if not (self._too_fast_said or reached or patient or self.figured):
             note = too_fast_note(float(ticks["vx_mm_s"].max()), self.style)
             if note is not None:
                 self._too_fast_said = True
                 self.say(note)
 
     def _end_cue(self) -> Cue:
-        surface, following = self.surface, self.beside(1)
-        if surface.rows:
-            return Cue.PAGE_END if self.line is surface.lines[-1] else Cue.LINE_END
+        following = self.beside(1)
+        if self.rows:
+            return Cue.PAGE_END if self.line is self.lines[-1] else Cue.LINE_END
         last = following is None or following.block.page_number
         return Cue.PAGE_END if last else Cue.LINE_END
 
@@ -359,17 +334,17 @@ class Reader(Explored):
 
     def pan(self, step: int) -> bool:
         """Show the next part of the line, or the one before; False if there is none."""
-        panned = self.surface.pan(step)
+        panned = self.pan_on(step)
         if panned:
             self._arrive(another=False)
         return panned
 
     def turn_page(self, step: int) -> bool:
         """Show the next page of the surface, or the one before; False if there is none."""
-        if not self.surface.turn(step):
+        if not self.turn_over(step):
             return False
-        if self.surface.rows:
-            first, *others = (self.layout.number(line) for line in self.surface.lines)
+        if self.rows:
+            first, *others = (self.layout.number(line) for line in self.lines)
             lines = f"lines {first} to {others[-1]}" if others else f"line {first}"
             self.say(f"page: {lines}", Cue.PAGE_END)
         self._arrive()
@@ -378,7 +353,7 @@ class Reader(Explored):
     def scroll(self, cells_s: float) -> None:
         """Have lines come by time, at so many cells a second; 0 for by hand."""
         if not self.scroll_cells_s:
-            self._cells_due = max(len(self.surface.part), 1)
+            self._cells_due = max(len(self.part), 1)
         self.scroll_cells_s = cells_s
 
     def idle(self, now_s: float) -> None:
@@ -390,12 +365,10 @@ class Reader(Explored):
             self._watched_s = now_s
             self._read_anew()
         if self.figures is not None:
-            self.figures.take(self.surface)
+            self.figures.take(self)
             due, self._figure_due = self._figure_due, False
             if due:
-                self.figures.tell(
-                    self.line, self.say, below=self.surface.has_free(self.surface.row)
-                )
+                self.figures.tell(self.line, self.say, below=self.has_free(self.row))
         passed_s, self._ticked_s = now_s - self._ticked_s, now_s
         if self.scroll_cells_s and not (self.device.paused or self.finished):
             self._cells_due -= min(passed_s, 0.25) * self.scroll_cells_s
@@ -409,14 +382,10 @@ class Reader(Explored):
         if line is not None:
             self.kept.keep(line.place, self.layout.progress(line), around(line))
 
-    def steer(self) -> None:
-        """Have a simulated hand read what is under it."""
-        self.surface.steer()
-
     def come_back(self) -> None:
         """Put the text under the hand again, after a figure was felt in its place."""
         self.inside = None
-        self.surface.show(self.surface.parts, self.surface.row)
+        self.show_parts(self.parts, self.row)
         self._arrive(another=False)
         self.say(self.named())
 
@@ -424,7 +393,7 @@ class Reader(Explored):
         """Say what is at a cell of the line, and bring it under the finger."""
         if cell < len(self.line):
             self._remember()
-            self._put_under(self.line, cell, self._share or 0.0)
+            self._bring(self.line, cell, under=True)
         self.say(self.cell_said(cell))
 
     def cell_said(self, cell: int | None) -> str:
@@ -461,23 +430,22 @@ class Reader(Explored):
 
     def use(self, style: BrailleStyle) -> None:
         """Show lines in a style, laid out anew where that changes their length."""
-        surface = self.surface
-        place, share = self.place, self._share
-        width = min(cells_per_line(style.geometry, self.device.display), MOST_CELLS)
+        place, under = self.place, self.cell is not None
+        width = min(cells_per_line(style.geometry, self.display), MOST_CELLS)
         pitch_mm = style.geometry.cell_pitch_mm
-        if (self.style.geometry.cell_pitch_mm, surface.width) == (pitch_mm, width):
-            surface.show_in(style)
+        if (self.style.geometry.cell_pitch_mm, self.width) == (pitch_mm, width):
+            self.show_in(style)
         else:
-            surface.use(style)
-            self._lay_out(self.book, place, share)
+            self.fit(style)
+            self._lay_out(self.book, place, under=under)
 
     def lay_out(self, book: Book) -> None:
         """Lay the text out by another table; what is under the finger stays there."""
-        self._lay_out(book, self.place, self._share)
+        self._lay_out(book, self.place, under=self.cell is not None)
 
-    def _lay_out(self, book: Book, place: int, share: float | None) -> None:
+    def _lay_out(self, book: Book, place: int, *, under: bool) -> None:
         before = self.layout
-        layout = Layout(book, before.width if self._fixed else self.surface.width)
+        layout = Layout(book, before.width if self._fixed else self.width)
 
         def renumbered(number: int | None) -> int | None:
             line = None if number in (1, None) else before.line(number)
@@ -489,7 +457,7 @@ class Reader(Explored):
             raise InputError(f"{book.source.name} has no text")
         self.layout = layout
         self.first, self.last = renumbered(self.first) or 1, renumbered(self.last)
-        self._put_under(line, cell, share)
+        self._bring(line, cell, under=under)
 
     def _read_anew(self) -> None:
         """Read a file anew that has changed, at the same place."""
@@ -498,7 +466,7 @@ class Reader(Explored):
             book = self._changed()
             if book is None:
                 return
-            self._lay_out(book, nearest(book.source, words, place), None)
+            self._lay_out(book, nearest(book.source, words, place), under=False)
         except InputError as error:
             self.refuse(f"the file has changed and is not read anew: {error}")
             return

@@ -115,7 +115,7 @@ def render_reading(
             row = min([recorder.add_line(line.masks, print_of(line)) for line in page])
             masks = [line.masks for line in page]
             program = (
-                style.render_page(masks, display) if per_page else style.render(*masks, display)
+                style.render_page(masks, display) if per_page else style.render(masks[0], display)
             )
             for span in _blocks(along_mm.size):
                 x_mm, y_mm = along_mm[span], down_mm[span]
@@ -206,10 +206,10 @@ def render_picture(
             path=hand,
         )
         for span in _blocks(frames):
-            t_s, *pose = (of[span] for of in (way.t_s, way.x_mm, way.y_mm, way.theta_rad))
-            velocity = way.velocity_mm_s[span]
-            _, made = program.poses(*pose, t_s, velocity, going_on=span.start > 0)
-            x_mm, y_mm, theta_rad = pose
+            t_s, velocity = way.t_s[span], way.velocity_mm_s[span]
+            x_mm, y_mm, theta_rad = way.x_mm[span], way.y_mm[span], way.theta_rad[span]
+            going_on = span.start > 0
+            _, made = program.poses(x_mm, y_mm, theta_rad, t_s, velocity, going_on=going_on)
             recorder.add_frames(t_s, x_mm, 0, made, y_mm=y_mm, theta_rad=theta_rad)
             EAR.heed()
             done((span.start + t_s.size) / frames)

@@ -14,7 +14,6 @@ import numpy as np
 from vbraille.braille.cells import Cells
 from vbraille.reading.brltty import Talk
 from vbraille.reading.commands import Where, command
-from vbraille.reading.explored import Explored
 from vbraille.reading.surface import Part, Surface
 
 if TYPE_CHECKING:
@@ -34,7 +33,7 @@ _SIX: Final = 0x3F  # mask of dots 1 to 6
 _EIGHTH: Final = 3  # dot row of dots 7 and 8
 
 
-class Screen(Explored):
+class Screen(Surface):
     """Screen as BRLTTY shows it, under a hand.
 
     Parameters
@@ -50,8 +49,6 @@ class Screen(Explored):
 
     Attributes
     ----------
-    surface : Surface
-        What lies under the hand.
     talk : Talk
         What BRLTTY has said.
     """
@@ -67,32 +64,26 @@ class Screen(Explored):
         style: BrailleStyle,
         keyboard: Keyboard,
     ) -> None:
-        super().__init__(device, outputs)
+        super().__init__(device, outputs, "usual", style)
         self._port, self._keyboard = port, keyboard
         self._shown_s, self._changed_s = -math.inf, math.inf
-        self.surface = Surface(device, style, lambda _line, _step: None)
         self._begin()
         self._echoed, self._masks = self.talk.text, self.talk.masks
-        self.surface.show(self._parts(), 0)
+        self.show_parts(self._parts(), 0)
 
     def _begin(self) -> None:
-        self.talk = Talk(max(self.surface.rows, 1), self.surface.width, self.say)
-
-    @property
-    def style(self) -> BrailleStyle:
-        """Style that the screen is shown in."""
-        return self.surface.style
+        self.talk = Talk(max(self.rows, 1), self.width, self.say)
 
     @property
     def text(self) -> str:
         """Print of the line under the hand."""
-        begin = self.surface.row * self.line_masks.size
+        begin = self.row * self.line_masks.size
         return self.talk.text[begin : begin + self.line_masks.size].rstrip()
 
     @property
     def line_masks(self) -> NDArray[np.uint8]:
         """Dot masks of the line under the hand, uint8[cells]."""
-        return self.talk.masks[self.surface.row]
+        return self.talk.masks[self.row]
 
     @property
     def cell(self) -> int | None:
@@ -107,15 +98,11 @@ class Screen(Explored):
         if max(*mapping.left, *mapping.right) < _EIGHTH and (self.talk.masks > _SIX).any():
             self.talk.remark("dots 7 and 8 are not shown: the mapping has three rows of dots")
         rows = (masks[: max(np.flatnonzero(masks), default=0) + 1] for masks in self.talk.masks)
-        return [Part(Cells.bare(masks), self.surface.width) for masks in rows]
+        return [Part(Cells.bare(masks), self.width) for masks in rows]
 
     def tune(self, **changes: Any) -> None:
         """Show the screen in another style."""
-        self.surface.show_in(self.style.replace(**changes))
-
-    def steer(self) -> None:
-        """Have a simulated hand read what is shown."""
-        self.surface.steer()
+        self.show_in(self.style.replace(**changes))
 
     def idle(self, now_s: float) -> None:
         """Meet BRLTTY, and show what it says; cells that stay are felt as before."""
@@ -132,7 +119,7 @@ class Screen(Explored):
                 self.say("BRLTTY: gone; the array rests until it comes back")
             if not np.array_equal(self.talk.masks, self._masks):
                 self._shown_s, calm, self._masks = now_s, False, self.talk.masks
-                self.surface.change(self._parts())
+                self.change(self._parts())
         if self.talk.text != self._echoed:
             self._echoed, self._changed_s = self.talk.text, now_s
         if now_s - self._changed_s >= _ECHO_S:
@@ -150,16 +137,16 @@ class Screen(Explored):
 
     def follow(self, ticks: NDArray[np.void]) -> None:
         """Look where the hand went; one that has read all asks for what follows."""
-        followed = self.surface.follow(ticks)
+        followed = self.track(ticks)
         if followed is not None and followed.done and self._port.connected:
-            self.send("WINDN" if self.surface.rows else "FWINRT")
-            self.surface.begin(self.surface.row)
+            self.send("WINDN" if self.rows else "FWINRT")
+            self.begin(self.row)
             self.steer()
 
     def route(self, cell: int) -> None:
         """Take the screen's cursor to a cell of the line."""
         # The driver counts from 0, takes no 0, and says otherwise (BRLTTY 6.5 to 6.8).
-        number = self.surface.row * self.line_masks.size + cell
+        number = self.row * self.line_masks.size + cell
         if number:
             self.send(f"ROUTE {number}")
         else:

@@ -1,12 +1,12 @@
 """Surface under the hand: part of one line, or a page of lines where the carriage has two axes.
 
-A surface knows from the ticks of the engine which line the finger is on, and whether it is done.
+It knows from the ticks of the engine which line the finger is on, and whether it is done.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -14,17 +14,18 @@ import numpy as np
 from vbraille.engine.engine import EndOfLine
 from vbraille.engine.record import Flag
 from vbraille.layout import cells_per_line
+from vbraille.reading.explored import Explored
 from vbraille.simulation.steering import ReadLine, ReadPage
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
     from vbraille.braille.geometry import Geometry
-    from vbraille.display import Display
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.figures import BookFigures
+    from vbraille.reading.outputs import Output
     from vbraille.render import BrailleStyle
     from vbraille.render.program import Program
 
@@ -51,14 +52,11 @@ class Part:
         Largest number of cells that are shown.
     first : int
         Cell of the line that stands first; below 0, that many blank cells stand before the line.
-    start_mm : float
-        Place on the surface at which that cell begins, less than a cell's pitch before 0.
     """
 
     line: Any
     width: int
     first: int = 0
-    start_mm: float = 0.0
 
     def __len__(self) -> int:
         return max(0, min(self.width, len(self.line) - self.first))
@@ -75,14 +73,13 @@ class Part:
 
     def cell_at(self, x_mm: float, geometry: Geometry) -> int | None:
         """Cell of the line at a place on the surface; None if there is none."""
-        shown = math.floor((x_mm - self.start_mm) / geometry.cell_pitch_mm)
+        shown = math.floor(x_mm / geometry.cell_pitch_mm)
         return self.first + shown if 0 <= shown < len(self) and self.first + shown >= 0 else None
 
-    def under(self, cell: int, x_mm: float, pitch_mm: float, share: float) -> Part:
-        """Part with a cell at a place; a share of the cell, 0 to 1, is to the left of that."""
-        before = x_mm / pitch_mm - share  # cells, and a part of one
-        shown = math.ceil(before - 1e-9)
-        return replace(self, first=cell - shown, start_mm=min((before - shown) * pitch_mm, 0.0))
+    def under(self, cell: int, x_mm: float, geometry: Geometry) -> Part:
+        """Part with a cell at a place."""
+        shown = min(max(math.floor(x_mm / geometry.cell_pitch_mm), 0), self.width - 1)
+        return Part(self.line, self.width, cell - shown)
 
 
 class Followed(NamedTuple):
@@ -93,17 +90,15 @@ class Followed(NamedTuple):
     done: bool = False
 
 
-class Surface:
-    """Lines that lie under the hand.
+class Surface(Explored):
+    """Lines that lie under the hand; a book, or a screen.
 
     Parameters
     ----------
-    device
-        Device that it is shown on.
+    device, outputs, key_set
+        As of `Explored`.
     style
         How braille is shown.
-    beside
-        Function that gives the line after one, or before it where the step is -1; None at an end.
     figures
         The figures of the book; None if it has none.
     by_hand
@@ -130,21 +125,26 @@ class Surface:
     def __init__(
         self,
         device: ReadingDevice,
+        outputs: Sequence[Output],
+        key_set: str,
         style: BrailleStyle,
-        beside: Callable[[Any, int], Any],
-        figures: BookFigures | None = None,
         *,
+        figures: BookFigures | None = None,
         by_hand: bool = True,
     ) -> None:
-        self._device, self._beside, self._figures = device, beside, figures
-        self._by_hand = by_hand
+        super().__init__(device, outputs, key_set)
+        self.figures, self.by_hand = figures, by_hand
         self.parts: Sequence[Part | None] = []
         self.row = self.number = 0
         self.figured = False
         self.finger_row = -1  # in which the finger is now; -1 if it is above the page
-        self.use(style)
+        self.fit(style)
 
-    def use(self, style: BrailleStyle) -> None:
+    def neighbour(self, line: Any, step: int) -> Any:  # noqa: ARG002 - a screen has no more
+        """Line after one, or before it where the step is -1; None at an end."""
+        return None
+
+    def fit(self, style: BrailleStyle) -> None:
         """Show what comes in a style.
 
         Raises
@@ -152,16 +152,10 @@ class Surface:
         InputError
             If there is no room for a cell.
         """
-        display = self._device.display
-        self.width = min(cells_per_line(style.geometry, display), MOST_CELLS)
-        pitches = display.height_mm / style.geometry.line_pitch_mm - _below_pitches(style)
+        self.width = min(cells_per_line(style.geometry, self.display), MOST_CELLS)
+        pitches = self.display.height_mm / style.geometry.line_pitch_mm - _below_pitches(style)
         self.rows = min(max(0, math.floor(pitches + 1e-9)), MOST_LINES)
         self.style = style
-
-    @property
-    def display(self) -> Display:
-        """Display that it is shown on."""
-        return self._device.display
 
     @property
     def part(self) -> Part:
@@ -184,10 +178,7 @@ class Surface:
     @property
     def end_mm(self) -> float:
         """Place where the last dot of the line ends."""
-        return self._end_of(self.part)
-
-    def _end_of(self, part: Part) -> float:
-        return part.start_mm + self.style.geometry.extent_mm(len(part))
+        return self.style.geometry.extent_mm(len(self.part))
 
     def has_free(self, row: int) -> bool:
         """Tell whether rows are kept free below a row's line, for its figure."""
@@ -200,9 +191,9 @@ class Surface:
         row = self.finger_row if 0 <= self.finger_row < self.rows else 0
         self._lay(part, min(row, self.rows - 1 - self._free(part.line)))
 
-    def turn(self, step: int) -> bool:
+    def turn_over(self, step: int) -> bool:
         """Show the next page, or the one before; False if there are no lines."""
-        line = self._beside(self.lines[-1 if step > 0 else 0], step)
+        line = self.neighbour(self.lines[-1 if step > 0 else 0], step)
         if line is None:
             return False
         if step < 0 and self.rows:
@@ -215,7 +206,7 @@ class Surface:
     def _lay(self, part: Part, row: int) -> None:
         """Show a part of a line, on a page in a row with the lines around it."""
         if not self.rows:
-            self.show([part], 0)
+            self.show_parts([part], 0)
             return
         above = self._fitting(part.line, -1, row)[::-1]
         below = self._fitting(part.line, 1, self.rows - row - 1 - self._free(part.line))
@@ -223,29 +214,29 @@ class Surface:
         first = part.first if part.first >= 0 and part.first % part.width == 0 else 0
         parts: list[Part | None] = []
         for line in (*above, part.line, *below):
-            other = Part(line, part.width, first, part.start_mm)
+            other = Part(line, part.width, first)
             parts += [part if line is part.line else other, *[None] * self._free(line)]
         before = row - parts.index(part)
-        self.show([None] * before + parts, row)
+        self.show_parts([None] * before + parts, row)
 
     def _free(self, line: Any) -> int:
         """Number of rows to keep free below a line."""
-        if self._figures is None or not self.rows:
+        if self.figures is None or not self.rows:
             return 0
         pitch_mm, travel_mm = self.style.geometry.line_pitch_mm, self.display.travel_mm
-        return self._figures.rows_below(line, pitch_mm, self.rows, travel_mm)
+        return self.figures.rows_below(line, pitch_mm, self.rows, travel_mm)
 
     def _fitting(self, line: Any, step: int, rows: int) -> list[Any]:
         """Lines after one, or before it, for which there are rows, with their figures."""
         found: list[Any] = []
-        while (line := self._beside(line, step)) is not None:
+        while (line := self.neighbour(line, step)) is not None:
             rows -= 1 + self._free(line)
             if rows < 0:
                 break
             found.append(line)
         return found
 
-    def pan(self, step: int) -> bool:
+    def pan_on(self, step: int) -> bool:
         """Show the next parts of the lines, or those before; False if there are none."""
         here = self.part
         first = max(here.first + step * here.width, 0)
@@ -253,19 +244,19 @@ class Surface:
             return False
         moved = [None if part is None else Part(part.line, part.width, first)
                  for part in self.parts]  # fmt: skip
-        self.show(moved, self.row)
+        self.show_parts(moved, self.row)
         return True
 
     def show_in(self, style: BrailleStyle) -> None:
         """Show the same in another style; it fades in under the finger."""
         before = self.style.geometry.line_pitch_mm, self.rows
-        self.use(style)
+        self.fit(style)
         if self.rows and before != (style.geometry.line_pitch_mm, self.rows):
             self.put(self.part)
         else:
             self._render()
 
-    def show(self, parts: Sequence[Part | None], row: int) -> None:
+    def show_parts(self, parts: Sequence[Part | None], row: int) -> None:
         """Show parts of lines, one below the other, of which one is read."""
         self.parts = parts
         self.number += 1
@@ -285,18 +276,19 @@ class Surface:
     def show_program(self, program: Program) -> None:
         """Have a page with its figures take the place of the page without them."""
         self.figured = True
-        self._device.put(program, self.number)
+        self.device.put(program, self.number)
 
     def steer(self) -> None:
         """Have a simulated hand read what is shown."""
         if not self.rows:
-            self._device.give(ReadLine(self.end_mm))
+            self.device.give(ReadLine(self.end_mm))
             return
         pitch_mm, lines = self.style.geometry.line_pitch_mm, len(self.parts)
-        end_mm = max(self._end_of(part) for part in self.parts if part is not None)
+        longest = max(len(part) for part in self.parts if part is not None)
+        end_mm = self.style.geometry.extent_mm(longest)
         below_mm = self.display.height_mm - lines * pitch_mm
         foot_mm = min(below_mm, (_below_pitches(self.style) + 0.5) * pitch_mm)
-        self._device.give(ReadPage(lines, pitch_mm, end_mm, foot_mm * self._by_hand))
+        self.device.give(ReadPage(lines, pitch_mm, end_mm, foot_mm * self.by_hand))
 
     def _render(self) -> None:
         self.figured = False
@@ -304,11 +296,9 @@ class Surface:
             program = self.style.render_page(self.masks, self.display)
         else:
             program = self.style.render(self.part.masks, self.display)
-        if self.part.start_mm:
-            program = program.with_anchor(self.display.span_mm / 2 + self.part.start_mm)
-        self._device.put(program, self.number)
-        if self._figures is not None:
-            self._figures.place(self)
+        self.device.put(program, self.number)
+        if self.figures is not None:
+            self.figures.place(self)
 
     # What the hand does
 
@@ -324,7 +314,7 @@ class Surface:
         self.reached = self._left = False
         self._end = EndOfLine(self.display.span_mm, self.end_mm)
 
-    def follow(self, ticks: NDArray[np.void]) -> Followed | None:
+    def track(self, ticks: NDArray[np.void]) -> Followed | None:
         """Look where the hand went; None if nothing of what is shown was to be felt."""
         felt = ticks[(ticks["line"] == self.number) & (ticks["flags"] & _PAUSED == 0)]
         if self.rows and ticks.size and not math.isnan(ticks["y_mm"][-1]):

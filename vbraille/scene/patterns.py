@@ -244,7 +244,7 @@ class StraightLine(Shape, frozen=True, kw_only=True, tag="line"):
 
     @property
     def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
-        """Its two ends."""
+        """Return its two ends."""
         return ((self.start_mm, self.end_mm),), False
 
 
@@ -462,7 +462,7 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
 
     @property
     def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
-        """Its vertices."""
+        """Return its vertices."""
         return (self.vertices_mm,), True
 
 
@@ -501,7 +501,7 @@ class PathShape(Shape, frozen=True, kw_only=True, tag="path"):
 
     @property
     def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
-        """Its contours."""
+        """Return its contours."""
         return self.contours_mm, self.closed
 
 

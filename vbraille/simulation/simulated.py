@@ -12,12 +12,12 @@ from vbraille.devices.base import Device
 from vbraille.devices.events import Button, HandDone, HandHeld, Knob
 from vbraille.display import Pose
 from vbraille.errors import InputError, check_range
-from vbraille.simulation.controls import MOST_BUTTONS, Controls, parse_presses
+from vbraille.simulation.controls import MOST_BUTTONS, Controls, parse_moves
 from vbraille.simulation.hand import STILL_S, Area, Still
 from vbraille.simulation.motion import Course
 from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
-from vbraille.simulation.steering import BeAt, GlideTo, Hold, LetGo, ReadLine, ReadPage
+from vbraille.simulation.steering import GlideTo, Hold, LetGo, ReadLine, ReadPage
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -170,12 +170,9 @@ class SimulatedDevice(Device):
         """Have the hand follow an order; a recorded hand sets out with the first and goes on."""
         hand, home_mm = self.hand, -self.display.span_mm
         course, now_ns = self._course, self._now_ns()
-        if isinstance(order, BeAt | GlideTo):
-            is_led = isinstance(order, BeAt)
-            theta_rad = order.theta_rad if is_led else course.at(now_ns)[2]
-            speed_mm_s = HELD_MM_S if is_led else order.speed_mm_s
-            to = order.x_mm + home_mm / 2, order.y_mm, theta_rad
-            course.go_to(to, now_ns, speed_mm_s)
+        if isinstance(order, GlideTo):
+            to = order.x_mm + home_mm / 2, order.y_mm, course.at(now_ns)[2]
+            course.go_to(to, now_ns, order.speed_mm_s)
         elif isinstance(hand, Still):
             course.go_to(course.at(now_ns), now_ns, HELD_MM_S, STILL_S)
         elif isinstance(hand, Recorded):
@@ -233,4 +230,4 @@ def open_simulated(address: str, wanted: Display | None) -> SimulatedDevice:
     if given or not seed.isdecimal() or (address and not address.startswith("?")):
         raise InputError(f"there is no device sim:{address}; give sim, or sim:?hand=HAND&seed=N")
     moved = parse_hand(hand, int(seed), pointed=True) if hand else None
-    return SimulatedDevice(wanted, hand=moved, presses=parse_presses(presses))
+    return SimulatedDevice(wanted, hand=moved, presses=parse_moves(presses))

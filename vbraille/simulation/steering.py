@@ -56,14 +56,6 @@ class GlideTo(msgspec.Struct, frozen=True, tag=True):
     speed_mm_s: Annotated[float, msgspec.Meta(gt=0, le=1e9)]
 
 
-class BeAt(msgspec.Struct, frozen=True, tag=True):
-    """Order to go to a pose of the array's centre as fast as a hand is led, and stay there."""
-
-    x_mm: _Finite
-    y_mm: _Finite = 0.0
-    theta_rad: _Finite = 0.0
-
-
 class Hold(msgspec.Struct, frozen=True, tag=True):
     """Be held by a person at a pose of the array's centre, ahead of all orders, until `LetGo`."""
 
@@ -76,7 +68,7 @@ class LetGo(msgspec.Struct, frozen=True, tag=True):
     """Be held no more, and go on with what was not done yet."""
 
 
-HandOrder = ReadLine | ReadPage | GlideTo | BeAt | Hold | LetGo
+HandOrder = ReadLine | ReadPage | GlideTo | Hold | LetGo
 _decoder: Final = msgspec.json.Decoder(HandOrder)
 
 

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 from vbraille.engine.clock import RealClock
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.simulation.carriage import area_of
-from vbraille.simulation.controls import Controls, parse_presses, parse_script
+from vbraille.simulation.controls import Controls, parse_moves
 from vbraille.simulation.pty import Port
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.simulator import Simulator
 from vbraille.simulation.specs import parse_hand
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator
 
     from vbraille.display import Display
     from vbraille.engine.clock import Clock
@@ -69,8 +69,7 @@ def simulated_controller(
     seed: int = 1,
     placed: bool = True,
     faults: Faults | None = None,
-    presses: Sequence[str] = (),
-    script: str = "",
+    press: str = "",
     say: Callable[[str], None] = lambda _: None,
 ) -> Iterator[str]:
     """Run a controller at a port, in a thread, in real time; give the spec that opens it.
@@ -85,19 +84,16 @@ def simulated_controller(
         Whether its encoders know where the carriage is; otherwise it waits for ZERO.
     faults
         Ways in which the controller misbehaves; None for none.
-    presses
-        Presses of its buttons after the first greeting, such as "1@2.5s", or "1@2.5s-4s" for a
-        button that is held.
-    script
-        Lines of times and what is then done to buttons and knobs, such as "2.5s press 1",
-        "3s release 1" and "4s knob 1 0.8".
+    press
+        Moves of its buttons and knobs after the first greeting, such as
+        "1@2.5s-4s, knob 1 0.8@4s".
     say
         Function that is told what happens, a sentence at a time.
 
     Raises
     ------
     InputError
-        If there is no such hand, or a press or a line of the script is none.
+        If there is no such hand, or a move is none.
     ValueError
         If the protocol has no room for the display.
 
@@ -120,9 +116,7 @@ def simulated_controller(
             faults=faults,
             placed=placed,
             area=area_of(info, model_of(info).style.geometry.line_pitch_mm),
-            controls=Controls(
-                (*parse_script(script, "the script"), *parse_presses(",".join(presses)))
-            ),
+            controls=Controls(parse_moves(press)),
         )
         thread = Thread(target=simulator.run, args=(stopped.is_set,), daemon=True)
         thread.start()

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import unicodedata
-from collections import Counter, OrderedDict
+from collections import Counter
+from functools import lru_cache
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from vbraille.braille.cells import Cells
 from vbraille.errors import InputError
-from vbraille.translate.blocks import Mark, MarkKind
+from vbraille.translate.blocks import MarkKind, cut_marks
 from vbraille.translate.languages import find_table
 from vbraille.translate.spellings import Kind, Undefined
 from vbraille.translate.tables import BrailleTable, six_dot_table, to_cells
@@ -19,7 +19,7 @@ from vbraille.translate.undefined import Written
 from vbraille.wording import count, setting
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from vbraille.translate.blocks import Block
     from vbraille.translate.source import Source
@@ -27,8 +27,9 @@ if TYPE_CHECKING:
 _REMEMBERED = 64  # blocks
 # Unified English Braille's indicators for code switching (Rules of UEB, 14.3): of a word and of its
 # end, and of a passage, whose opening has the language's letters between its cells.
-_UEB_WORD, _UEB_WORD_END = "⠘⠷", "⠘⠾"
-_UEB_OPENING, _UEB_OPENED, _UEB_CLOSING = "⠐⠷", "⠄", "⠠⠐⠾"
+_UEB_WORD, _UEB_WORD_END, _UEB_OPENING, _UEB_OPENED, _UEB_CLOSING = (
+    Cells.from_unicode(sign).masks.tobytes() for sign in ("⠘⠷", "⠘⠾", "⠐⠷", "⠄", "⠠⠐⠾")
+)
 _UEB_WORDS = 2  # at most, each with its own
 
 
@@ -71,7 +72,7 @@ class Book:
         self.source, self.table = source, table
         self.language, self.grade, self.switch = language, grade, switch
         self.otherwise: dict[int, Counter[tuple[Kind, str]]] = {}
-        self._recent: OrderedDict[int, Cells] = OrderedDict()
+        self._cells = lru_cache(_REMEMBERED)(self._make)
         self._tables: dict[str, BrailleTable] = {}
         self._scripts: set[str] = set()  # scripts that a note was made on
 
@@ -83,14 +84,7 @@ class Book:
         ValueError
             If the block has to be translated and there is no table.
         """
-        found = self._recent.get(block.number)
-        if found is None:
-            found = self._recent[block.number] = self._make(block)
-            if len(self._recent) > _REMEMBERED:
-                self._recent.popitem(last=False)
-        else:
-            self._recent.move_to_end(block.number)
-        return found
+        return self._cells(block)
 
     def notes(self) -> list[str]:
         """Sentences on the source and the table that are due now; each is given once."""
@@ -104,8 +98,7 @@ class Book:
             raise ValueError(f"{self.source.name} has text in it; give its book a braille table")
         written = Written(b"", [])
         for table, start, text, language in self._passages(block):
-            marks = _within(block.marks, start, start + len(text))
-            part = table.write(text, marks)
+            part = table.write(text, cut_marks(block.marks, start, start + len(text)))
             if table is not self.table:
                 part = self._between_signs(part, language, block.text[start + len(text) :][:1])
             written.masks += part.masks
@@ -162,35 +155,29 @@ class Book:
         """A passage in another language between the signs that say so."""
         own = self.table
         assert own is not None
-        masks = np.frombuffer(part.masks, np.uint8)
-        words = np.flatnonzero(np.diff(np.r_[False, masks != 0].astype(np.int8)) == 1)
-        if not words.size:
+        words = [found.span() for found in re.finditer(rb"[^\0]+", part.masks)]
+        if not words:
             return part
-        end = int(np.flatnonzero(masks)[-1]) + 1
+        first, end = words[0][0], words[-1][1]
         language = tag.replace("_", "-").partition("-")[0].strip().lower()
         if not own.is_ueb:
             opening, closing = own.brackets
             signs = {
-                int(words[0]): own.write(f"{opening}{language}:").masks,
+                first: own.write(f"{opening}{language}:").masks,
                 end: own.write(closing).masks,
             }
-        elif words.size <= _UEB_WORDS:
-            signs = dict.fromkeys(words.tolist(), _dots(_UEB_WORD))
+        elif len(words) <= _UEB_WORDS:
+            signs = dict.fromkeys((start for start, _ in words), _UEB_WORD)
             if following.strip() and part.masks[-1]:
-                signs[end] = _dots(_UEB_WORD_END)
+                signs[end] = _UEB_WORD_END
         else:
-            letters = Cells.from_brf(language).to_unicode()
-            signs = {
-                int(words[0]): _dots(_UEB_OPENING + letters + _UEB_OPENED),
-                end: _dots(_UEB_CLOSING),
-            }
-        whole = Written(b"", [], part.otherwise)
-        for cell in range(len(part.masks) + 1):
-            sign = signs.get(cell, b"")
-            whole.masks += sign + part.masks[cell : cell + 1]
+            letters = Cells.from_brf(language).masks.tobytes()
+            signs = {first: _UEB_OPENING + letters + _UEB_OPENED, end: _UEB_CLOSING}
+        for cell, sign in sorted(signs.items(), reverse=True):
+            part.masks = part.masks[:cell] + sign + part.masks[cell:]
             place = part.places[min(cell, len(part.places) - 1)]
-            whole.places += [place] * (len(sign) + (cell < len(part.masks)))
-        return whole
+            part.places[cell:cell] = [place] * len(sign)
+        return part
 
     def _note_script(self, block: Block, otherwise: Counter[tuple[Kind, str]]) -> None:
         """Note once that most of a block is in a script that its table does not know."""
@@ -225,8 +212,6 @@ class Remarks:
         Book that the lines are of.
     """
 
-    _NAMED = 5  # kinds in a sentence, the most frequent
-
     def __init__(self, book: Book) -> None:
         self._book = book
         self._blocks: set[int] = set()
@@ -235,25 +220,21 @@ class Remarks:
 
     def see(self, block: Block) -> None:
         """Count what is in a block, once."""
-        if block.number in self._blocks:
-            return
-        self._blocks.add(block.number)
-        for mark in block.marks:
-            if mark.kind is MarkKind.UNSHOWN:
-                self._unshown[mark.target or "other thing"] += 1
-        self._written += self._book.otherwise.get(block.number, Counter())
+        if block.number not in self._blocks:
+            self._blocks.add(block.number)
+            things = [mark.target for mark in block.marks if mark.kind is MarkKind.UNSHOWN]
+            self._unshown.update(thing or "other thing" for thing in things)
+            self._written.update(self._book.otherwise.get(block.number, {}))
 
     def sentences(self) -> list[str]:
         """Sentences on all that was seen; none if all is shown as it stands."""
-        table = self._book.table
-        said = []
-        unknown = self._named(Kind.MARKED, Kind.NAME)
+        table, said = self._book.table, []
+        unknown, plain = self._named(Kind.MARKED, Kind.NAME), self._named(Kind.PLAIN)
         if unknown and table is not None:
             said.append(
                 f"the table {table.name} does not know {unknown}, {_WAYS[table.undefined]}; "
                 f"{setting('undefined')} chooses mark, name, code or drop"
             )
-        plain = self._named(Kind.PLAIN, Kind.BARE)
         if plain and table is not None:
             said.append(
                 f"the table {table.name} has no sign for {plain}, written as what is nearest"
@@ -265,12 +246,9 @@ class Remarks:
                 f"({', '.join(map(repr, words[:3]))}), marked in the text"
             )
         if self._unshown:
-            total = self._unshown.total()
-            named = [count(n, what) for what, n in self._unshown.most_common(self._NAMED)]
-            more = total - sum(n for _, n in self._unshown.most_common(self._NAMED))
-            named += [f"{more} others"] if more else []
+            most = _most(self._unshown, 5, count, "{} others")
             said.append(
-                f"not shown: {count(total, 'thing')} ({', '.join(named)}); "
+                f"not shown: {count(self._unshown.total(), 'thing')} ({most}); "
                 f"each is marked where it stands"
             )
         return said
@@ -283,10 +261,17 @@ class Remarks:
                 found[part] += number
         if not found:
             return ""
-        named = [f"{n} of {describe(part)}" for part, n in found.most_common(3)]
-        more = found.total() - sum(n for _, n in found.most_common(3))
-        named += [f"{more} of others"] if more else []
-        return f"{count(found.total(), 'character')} ({', '.join(named)})"
+        most = _most(found, 3, lambda n, part: f"{n} of {describe(part)}", "{} of others")
+        return f"{count(found.total(), 'character')} ({most})"
+
+
+def _most(found: Counter[str], most: int, say: Callable[[int, str], str], others: str) -> str:
+    """The most frequent of what was counted, in words, and how many others there are."""
+    named = found.most_common(most)
+    more = found.total() - sum(number for _, number in named)
+    return ", ".join(
+        [*(say(n, what) for what, n in named), *([others.format(more)] if more else [])]
+    )
 
 
 def describe(part: str) -> str:
@@ -295,22 +280,9 @@ def describe(part: str) -> str:
     return f"U+{ord(part[0]):04X} {name}".strip()
 
 
-def _within(marks: tuple[Mark, ...], start: int, stop: int) -> list[Mark]:
-    """Marks on a part of a text, as indices of the part."""
-    return [
-        Mark(mark.kind, max(mark.start - start, 0), min(mark.end, stop) - start, mark.target)
-        for mark in marks
-        if mark.start < stop and mark.end > start
-    ]
-
-
 def _named(language: str, grade: int | None = None, otherwise: str = "") -> str:
     """Name of the table of a language and grade, or another if there is none."""
     try:
         return find_table(language, grade)
     except InputError:
         return otherwise
-
-
-def _dots(cells: str) -> bytes:
-    return bytes(ord(cell) & 0xFF for cell in cells)

@@ -20,27 +20,13 @@ _MARKS = (
     (codecs.BOM_UTF16_LE, "utf-16-le"),
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
-_MAGIC = {
-    b"\x89PNG": "a PNG picture",
-    b"\xff\xd8\xff": "a JPEG picture",
-    b"GIF8": "a GIF picture",
-    b"\x1f\x8b": "a gzip archive",
-    b"PK\3\4": "a zip archive",
-    b"Rar!": "a RAR archive",
-    b"7z\xbc\xaf": "a 7z archive",
-    b"\x7fELF": "a program",
-    b"ID3": "a sound",
-    b"OggS": "a sound",
-    b"RIFF": "a sound or a film",
-    b"\x89HDF": "an HDF5 file",
-    b"SQLite format 3": "an SQLite database",
-}
 _SAMPLE = 65_536
 _TEXT_CONTROLS = frozenset(b"\t\n\v\f\r\b\x1a\x1b\0")
 # Controls, where windows-1252 has characters that browsers read; what is only for typesetters.
 _ODD = re.compile("[\x80-\x9f\u00ad\u200b\ufeff]")
 _TAG = re.compile(rb"<[^<>]{1,1000}>")
 _NOT_ASCII = re.compile(r"[^\x00-\x7f\ufffd]")
+_LONE = re.compile("[\udc80-\udcff]")  # bytes that an encoding does not have
 _ACCENTED = re.compile("[^\u0300-\u036f\u3099\u309a][\u0300-\u036f\u3099\u309a]+")
 
 
@@ -107,20 +93,13 @@ def decode(content: bytes, encoding: str | None = None) -> tuple[str, str]:
 
         found = charset_normalizer.from_bytes(sample).best()
         name = found.encoding if found else name
-    return (
-        _by_bytes(content, name),
-        f"is not UTF-8 at byte {wrong}, and is read as {name}; {setting('encoding')} names another",
-    )
-
-
-def _by_bytes(content: bytes, name: str) -> str:
-    """Text by an encoding; a byte that it does not have is taken as windows-1252."""
     text = content.decode(name, "surrogateescape" if name != "utf_16" else "replace")
-    return re.sub(
-        "[\udc80-\udcff]",
-        lambda found: bytes([ord(found[0]) - 0xDC00]).decode("cp1252", "replace"),
-        text,
+    # A byte that the encoding does not have is taken as windows-1252.
+    text = _LONE.sub(lambda found: bytes([ord(found[0]) & 0xFF]).decode("cp1252", "replace"), text)
+    note = (
+        f"is not UTF-8 at byte {wrong}, and is read as {name}; {setting('encoding')} names another"
     )
+    return text, note
 
 
 def _wide(sample: bytes) -> str:
@@ -131,15 +110,12 @@ def _wide(sample: bytes) -> str:
     return "utf-16-le" if odd > even else "utf-16-be"
 
 
-def binary_kind(sample: bytes) -> str | None:
-    """Kind of a file whose beginning shows that it is no text; None if it may be text."""
-    for magic, kind in _MAGIC.items():
-        if sample.startswith(magic):
-            return kind
+def is_binary(sample: bytes) -> bool:
+    """Tell whether the beginning of a file shows that it is no text."""
     if sample.startswith(tuple(mark for mark, _ in _MARKS)) or _wide(sample):
-        return None
+        return False
     controls = sum(byte < 32 and byte not in _TEXT_CONTROLS for byte in sample) + sample.count(0)
-    return "binary data" if controls > 1 + len(sample) / 20 else None
+    return controls > 1 + len(sample) / 20
 
 
 def tidy(text: str) -> str:

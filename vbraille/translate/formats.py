@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import io
 import re
-from dataclasses import dataclass
+import tomllib
 from functools import partial
 from importlib import import_module
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
 from vbraille.errors import InputError
 from vbraille.translate.archive import MOST_BYTES, Archive
-from vbraille.translate.encodings import binary_kind, decode
+from vbraille.translate.encodings import decode, is_binary
 from vbraille.translate.plain import text_blocks
 from vbraille.translate.source import Source
 from vbraille.wording import nearest, setting
@@ -21,79 +21,47 @@ if TYPE_CHECKING:
     from collections.abc import Collection
 
 
-@dataclass(frozen=True, slots=True)
-class Format:
+class _Format(NamedTuple):
     """A format of books.
 
-    Parameters
+    Attributes
     ----------
-    name
-        Name by which an option calls it.
-    reader
+    reader : str
         Function that reads its blocks, as a module of this package and a name in it. It is loaded
         when a book needs it.
-    suffixes
+    suffixes : tuple of str
         Ends of files' names, for those whose bytes do not show it.
-    takes
+    takes : tuple of str
         Options of `open_source` that the reader takes.
     """
 
-    name: str
     reader: str
     suffixes: tuple[str, ...] = ()
     takes: tuple[str, ...] = ()
 
 
 _FORMATS = {
-    form.name: form
-    for form in (
-        Format("text", "plain:read_text", takes=("encoding", "keep_lines")),
-        Format("markdown", "markdown:read_markdown", (".md", ".markdown"), ("encoding",)),
-        Format("html", "html:read_html", (".html", ".htm", ".xhtml"), ("encoding",)),
-        Format("epub", "epub:read_epub"),
-        Format("dtbook", "html:read_html"),
-        Format("docx", "docx:read_docx"),
-        Format("odt", "odt:read_odt"),
-        Format("rtf", "rtf:read_rtf"),
-        Format("brf", "braillefiles:read_brf", (".brf", ".brl"), ("encoding", "brf_table")),
-        Format("unicode-braille", "braillefiles:read_brf", takes=("encoding",)),
-        Format("pef", "braillefiles:read_pef", (".pef",)),
-    )
+    "text": _Format("plain:read_text", takes=("encoding", "keep_lines")),
+    "markdown": _Format("markdown:read_markdown", (".md", ".markdown"), ("encoding",)),
+    "html": _Format("html:read_html", (".html", ".htm", ".xhtml"), ("encoding",)),
+    "epub": _Format("epub:read_epub"),
+    "dtbook": _Format("html:read_html"),
+    "docx": _Format("docx:read_docx"),
+    "odt": _Format("odt:read_odt"),
+    "rtf": _Format("rtf:read_rtf"),
+    "brf": _Format("braillefiles:read_brf", (".brf", ".brl"), ("encoding", "brf_table")),
+    "unicode-braille": _Format("braillefiles:read_brf", takes=("encoding",)),
+    "pef": _Format("braillefiles:read_pef", (".pef",)),
 }
 FORMATS = tuple(_FORMATS)
 _KEEP_LINES = ("brf", "unicode-braille", "pef")  # whatever is asked for
-_BY_SUFFIX = {suffix: form.name for form in _FORMATS.values() for suffix in form.suffixes}
 _ROOTS = {"html": "html", "head": "html", "title": "html", "body": "html"}
 _ROOTS |= {"dtbook": "dtbook", "pef": "pef"}
-_PICTURE = "a picture, not a text; vbraille feel shows it to the finger"
+_UNLIKE = tomllib.loads(Path(__file__).with_name("unlike.toml").read_text("utf-8"))
+_PICTURE = _UNLIKE["roots"]["svg"]
 _PICTURE_SUFFIXES = (".scene", ".svg", ".svgz", ".gen", ".tx")
 # A scene is TOML that says how large its canvas is.
 _SCENE = re.compile(r"\A(?:\s*#.*\n)*\s*[\w\[].*?^(?:\[canvas\]|canvas[ \t]*=)", re.M | re.S)
-_OTHER_ROOTS = {
-    "svg": _PICTURE,
-    "laterographics_xml": _PICTURE,
-    "office:document": "a flat OpenDocument file (FODT); save it as ODT",
-    "w:worddocument": "a Word document as XML; save it as DOCX",
-    "pkg:package": "a Word document as XML; save it as DOCX",
-    "fictionbook": "a FictionBook (FB2); save it as EPUB",
-    "fulfillmenttoken": "a ticket for a book that Adobe locks; get the book as EPUB without a lock",
-}
-_OTHER_BEGINS = {
-    b"%PDF-": "a PDF document, which does not say in what order it reads; get it as EPUB or DOCX",
-    b"AT&TFORM": "a DjVu document, which is made of pictures; get the book as EPUB",
-    b"ITSF\3\0": "a compiled help file (CHM); unpack it and give its HTML files",
-    b"ITOLITLS": "a book for Microsoft Reader (LIT); get it as EPUB",
-    b"CONT\1\0": "a Kindle book (KFX); get it as EPUB",
-    b"CONT\2\0": "a Kindle book (KFX); get it as EPUB",
-    b"\xeaDRMION\xee": "a Kindle book (KFX) with Amazon's lock; get it as EPUB without a lock",
-    b"TPZ0": "a Kindle book (Topaz); get it as EPUB",
-}
-_OTHER_ZIPS = {
-    "xl/": "an Excel workbook; save its table as HTML or text",
-    "ppt/": "a PowerPoint presentation; save it as HTML or text",
-    "Index/Document.iwa": "a document of Apple's Pages; save it as DOCX or EPUB",
-    "ncc.html": "a zip archive of a DAISY book; unpack it and give the HTML file with the text",
-}
 _OLE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _BEFORE_ROOT = r"(?:\s+|<\?.*?\?>|<!--.*?-->)*"
 _ROOT = re.compile(_BEFORE_ROOT + r"<(?:!doctype\s+)?([\w.:-]+)(?=[\s/>\[])", re.I | re.S)
@@ -138,13 +106,15 @@ def open_source(
     name = name or str(file)
     stream = _stream(file, name)
     try:
-        found = _named(form) if form is not None else _FORMATS[find_format(stream, name)]
+        found = find_format(stream, name) if form is None else form.lower()
+        if found not in _FORMATS:
+            raise InputError(f"there is no form of books {form!r}{nearest(found, FORMATS)}")
         given = {"encoding": encoding, "brf_table": brf_table, "keep_lines": keep_lines or None}
         options = _fitting(found, name, given, wishes)
         stream.seek(0)
-        module, _, function = found.reader.partition(":")
+        module, _, function = _FORMATS[found].reader.partition(":")
         reader = getattr(import_module(f"vbraille.translate.{module}"), function)
-        return Source(name, found.name, stream, partial(reader, **options))
+        return Source(name, found, stream, partial(reader, **options))
     except BaseException:
         stream.close()
         raise
@@ -166,29 +136,22 @@ def _stream(file: str | BinaryIO, name: str) -> BinaryIO:
     """Stream that can seek; a file that may be large stays on the disk if it is an archive."""
     try:
         if not isinstance(file, str):
-            return _kept(file.read(MOST_BYTES + 1), name)
-        path = Path(file)
-        if path.is_dir():
-            raise InputError(f"{name} is a directory; give a file in it")
-        if path.is_char_device():
-            raise InputError(f"{name} is a device, not a file; give a file")
-        stream, beginning = path.open("rb"), b""
-        try:
-            beginning = stream.read(4)
-            if path.is_file() and beginning.startswith(b"PK"):
-                return stream
-            return _kept(beginning + stream.read(MOST_BYTES), name)
-        finally:
-            if not beginning.startswith(b"PK"):
-                stream.close()
+            content = file.read(MOST_BYTES + 1)
+        else:
+            path = Path(file)
+            if path.is_dir() or path.is_char_device():
+                what = "directory; give a file in it" if path.is_dir() else "device; give a file"
+                raise InputError(f"{name} is a {what}")
+            with path.open("rb") as stream:
+                content = stream.read(4)
+                if path.is_file() and content.startswith(b"PK"):
+                    return path.open("rb")
+                content += stream.read(MOST_BYTES)
     except FileNotFoundError:
         raise InputError(f"there is no file {name}; check the name") from None
     except (OSError, ValueError) as error:
         said = getattr(error, "strerror", None) or error
         raise InputError(f"{name} cannot be read: {said}") from None
-
-
-def _kept(content: bytes, name: str) -> BinaryIO:
     if len(content) > MOST_BYTES:
         raise InputError(f"{name} has more than {MOST_BYTES / 1e6:.0f} MB; give a part of it")
     if not content:
@@ -196,15 +159,8 @@ def _kept(content: bytes, name: str) -> BinaryIO:
     return io.BytesIO(content)
 
 
-def _named(name: str) -> Format:
-    """Format of a name; InputError with the nearest name if there is none."""
-    if name.lower() not in _FORMATS:
-        raise InputError(f"there is no form of books {name!r}{nearest(name, FORMATS)}")
-    return _FORMATS[name.lower()]
-
-
 def _fitting(
-    form: Format, name: str, given: dict[str, Any], wishes: Collection[str]
+    form: str, name: str, given: dict[str, Any], wishes: Collection[str]
 ) -> dict[str, Any]:
     """Options for a reader, of those that are given.
 
@@ -213,18 +169,18 @@ def _fitting(
     InputError
         If an option is not for the format.
     """
-    options = {}
-    for option, value in given.items():
-        needless = option == "keep_lines" and form.name in _KEEP_LINES
-        in_settings = option in wishes and (option not in form.takes or form.name == "brf")
-        if value is None or needless or in_settings:
-            continue
-        if option not in form.takes:
+    options = {option: value for option, value in given.items() if value is not None}
+    if form in _KEEP_LINES:
+        options.pop("keep_lines", None)
+    for option in list(options):
+        fits = option in _FORMATS[form].takes
+        if option in wishes and (not fits or form == "brf"):
+            del options[option]
+        elif not fits:
             raise InputError(
-                f"{name} is read as {form.name}, for which there is no "
+                f"{name} is read as {form}, for which there is no "
                 f"{setting(option.replace('_', '-'))}; leave it out"
             )
-        options[option] = value
     return options
 
 
@@ -252,31 +208,40 @@ def find_format(stream: BinaryIO, name: str) -> str:
     refused = _refused(stream, sample)
     if refused:
         raise InputError(f"{name} is {refused}")
-    text = decode(sample)[0]
+    text, _ = decode(sample)
     root = _ROOT.match(text)
     if root is not None:
         for found in (root[1].lower(), root[1].lower().rpartition(":")[2]):
-            if found in _OTHER_ROOTS:
-                raise InputError(f"{name} is {_OTHER_ROOTS[found]}")
+            if found in _UNLIKE["roots"]:
+                raise InputError(f"{name} is {_UNLIKE['roots'][found]}")
             if found in _ROOTS:
                 return _ROOTS[found]
     printed = "".join(text[:4096].split())
     if sum("\u2800" <= character <= "\u28ff" for character in printed) > 0.9 * len(printed):
         return "unicode-braille" if printed else "text"
     suffix = PurePath(name).suffix.lower()
-    if suffix in _PICTURE_SUFFIXES or (suffix not in _BY_SUFFIX and _SCENE.match(text)):
+    by_suffix = [form for form, row in _FORMATS.items() if suffix in row.suffixes]
+    if suffix in _PICTURE_SUFFIXES or (not by_suffix and _SCENE.match(text)):
         raise InputError(f"{name} is {_PICTURE}")
-    found = _BY_SUFFIX.get(suffix, "text")
-    if found == "text" and (kind := binary_kind(sample)) is not None:
+    kind = _unlike("binary", sample) or ("binary data" if is_binary(sample) else "")
+    if kind and not by_suffix:
         raise InputError(f"{name} is {kind}, not text; give a book or a text file")
-    return found
+    return [*by_suffix, "text"][0]
+
+
+def _unlike(where: str, sample: bytes) -> str:
+    """End of a sentence on a file whose bytes begin so; empty for others."""
+    for beginning, said in _UNLIKE[where].items():
+        if sample.startswith(beginning.encode("latin-1")):
+            return said
+    return ""
 
 
 def _refused(stream: BinaryIO, sample: bytes) -> str:
     """End of a sentence on a book that cannot be read here; empty for others."""
-    for beginning, said in _OTHER_BEGINS.items():
-        if sample.startswith(beginning):
-            return said
+    said = _unlike("beginnings", sample)
+    if said:
+        return said
     if sample[60:68] in (b"BOOKMOBI", b"TEXtREAd"):
         first = int.from_bytes(sample[78:82])  # where the first record is, which tells of a lock
         if int.from_bytes(sample[first + 12 : first + 14]):
@@ -312,7 +277,7 @@ def _zipped(stream: BinaryIO, name: str) -> str:
         return "epub"  # a book without its mimetype is one nevertheless
     if "[Content_Types].xml" in members and any(each.startswith("word/") for each in members):
         return "docx"
-    for beginning, said in _OTHER_ZIPS.items():
+    for beginning, said in _UNLIKE["zips"].items():
         if any(member.startswith(beginning) for member in members):
             raise InputError(f"{name} is {said}")
     if kind.startswith("application/vnd.oasis.opendocument."):

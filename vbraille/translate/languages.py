@@ -1,89 +1,25 @@
 """Braille tables of languages: those that their readers use today.
 
 liblouis finds the literary, uncontracted table of a language; what its readers have otherwise is
-listed in `_USUAL`. `docs/languages.md` has the outcome for every language.
+listed in `languages.toml`. `docs/languages.md` has the outcome for every language.
 """
 
 from __future__ import annotations
 
 import re
+import tomllib
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 from vbraille.errors import InputError
 from vbraille.translate import liblouis
 from vbraille.wording import nearest, setting
 
-# Uncontracted and contracted tables that readers have where liblouis has others, or none with
-# metadata. Books of general interest are contracted in the languages of `_CONTRACTED`.
-_USUAL = {
-    "ar": ("ar.tbl", "ar-ar-g2.ctb"),
-    "cmn": ("zhcn-cbs.ctb", ""),
-    "cmn-hans": ("zhcn-cbs.ctb", ""),
-    "cmn-hant": ("zh-tw.ctb", ""),
-    "da": ("da-dk-g16.ctb", "da-dk-g26.ctb"),
-    "de": ("de-g1.ctb", "de-g2.ctb"),
-    "en": ("en-ueb-g1.ctb", "en-ueb-g2.ctb"),
-    "es": ("es.tbl", "es-g2.ctb"),
-    "fr": ("fr-bfu-comp6.utb", "fr-bfu-g2.ctb"),
-    "hu": ("hu.tbl", "hu-hu-g2.ctb"),
-    "ko": ("ko-g1.ctb", "ko-g2.ctb"),
-    "mn": ("mn-MN-g1.utb", "mn-MN-g2.ctb"),
-    "no": ("no-no-g0.utb", "no-no-g2.ctb"),
-    "pt": ("pt-pt-g1.utb", "pt.tbl"),
-    "ru": ("ru-litbrl.ctb", "ru-ru-g1.ctb"),
-    "sv": ("sv-g0.utb", "sv-g2.ctb"),
-    "tr": ("tr-g1.ctb", "tr-g2.ctb"),
-    "vi": ("vi-vn-g0.utb", "vi-vn-g2.ctb"),
-}
+_DATA = tomllib.loads(Path(__file__).with_name("languages.toml").read_text("utf-8"))
+_USUAL, _SAME = _DATA["usual"], _DATA["same"]
+# Languages whose books of general interest are contracted.
 _CONTRACTED = frozenset(("da", "de", "en", "ko"))
-# Tags that people write, those of older books (ISO 639-2) among them, and those of liblouis.
-_SAME = dict(
-    pair.split("=")
-    for pair in [
-        "iw=he",
-        "ku=kmr",
-        "nb=no",
-        "nn=no",
-        "prs=fa",
-        "zh=cmn",
-        "zh-cn=cmn-hans",
-        "zh-hans=cmn-hans",
-        "zh-hant=cmn-hant",
-        "zh-hk=yue",
-        "zh-mo=yue",
-        "zh-sg=cmn-hans",
-        "zh-tw=cmn-hant",
-        "ara=ar",
-        "cze=cs",
-        "ces=cs",
-        "dan=da",
-        "ger=de",
-        "deu=de",
-        "gre=el",
-        "ell=el",
-        "eng=en",
-        "spa=es",
-        "fin=fi",
-        "fre=fr",
-        "fra=fr",
-        "heb=he",
-        "hun=hu",
-        "ita=it",
-        "dut=nl",
-        "nld=nl",
-        "nor=no",
-        "nob=no",
-        "nno=no",
-        "pol=pl",
-        "por=pt",
-        "rus=ru",
-        "swe=sv",
-        "tur=tr",
-        "chi=cmn",
-        "zho=cmn",
-    ]
-)
 # Tables of a standard that is no longer in force, or with signs that books leave out.
 _DATED = re.compile(r"_\d{4}\b|-\d{4}[-.]|-detailed\b")
 _SIX_DOTS = ("dra.tbl", "mn-MN-g1.utb", "mn-MN-g2.ctb")  # whatever their metadata say

@@ -32,14 +32,6 @@ class UnendingError(Exception):
     """A translation takes too long, or liblouis crashes on it."""
 
 
-class _EndedError(Exception):
-    """The child has ended, `by_limit` or otherwise."""
-
-    def __init__(self, *, by_limit: bool) -> None:
-        super().__init__()
-        self.by_limit = by_limit
-
-
 class Answer(NamedTuple):
     """Cells that liblouis writes for a text.
 
@@ -111,16 +103,13 @@ class Louis:
         UnendingError
             If it takes too long.
         """
-        with self._asking:
-            try:
-                answer = self._exchange(question)
-            except _EndedError as ended:
-                if ended.by_limit:
-                    raise UnendingError from None
-                answer = self._exchange_again(question)
-        if isinstance(answer, Exception):
-            raise answer
-        return answer
+        with self._asking:  # once more if a child was ended from outside
+            answered = self._exchange(question) or self._exchange(question)
+        if answered is None:
+            raise UnendingError
+        if isinstance(answered[0], Exception):
+            raise answered[0]
+        return answered[0]
 
     def stop(self) -> None:
         """End the child."""
@@ -132,30 +121,26 @@ class Louis:
                 with suppress(OSError):  # what was not sent yet
                     stream.close()  # type: ignore[union-attr]
 
-    def _exchange_again(self, question: tuple[Any, ...]) -> Any:
-        """Ask a new child, for the last one may have been ended from outside."""
-        try:
-            return self._exchange(question)
-        except _EndedError:
-            raise UnendingError from None
-
-    def _exchange(self, question: tuple[Any, ...]) -> Any:
+    def _exchange(self, question: tuple[Any, ...]) -> tuple[Any] | None:
+        """Ask the child; None if it has ended otherwise than by its limit of time."""
         child = self._child or self._start()
         assert child.stdin is not None
         assert child.stdout is not None
         try:
             child.stdin.write(pickle.dumps(question))
             child.stdin.flush()
-            return pickle.load(child.stdout)
+            return (pickle.load(child.stdout),)
         except (EOFError, OSError, pickle.UnpicklingError):
-            by_limit = child.wait() == -signal.SIGPROF
-            if child.returncode == 1:
-                raise VbrailleError(
-                    "liblouis's own Python binding is not installed; install python3-louis of "
-                    "your system (the package louis of PyPI is something else)"
-                ) from None
+            code = child.wait()
             self.stop()
-            raise _EndedError(by_limit=by_limit) from None
+        if code == 1:
+            raise VbrailleError(
+                "liblouis's own Python binding is not installed; install python3-louis of "
+                "your system (the package louis of PyPI is something else)"
+            )
+        if code == -signal.SIGPROF:
+            raise UnendingError
+        return None
 
     def _start(self) -> subprocess.Popen[bytes]:
         self._child = subprocess.Popen(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, BinaryIO
 from weakref import finalize
 
 from vbraille.errors import InputError
-from vbraille.translate.blocks import Block, Mark
+from vbraille.translate.blocks import Block, cut_marks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -218,13 +218,9 @@ def _pieces(block: Block) -> Iterator[Block]:
 
 
 def _piece(block: Block, start: int, stop: int) -> Block:
-    marks = tuple(
-        Mark(mark.kind, max(mark.start - start, 0), min(mark.end, stop) - start, mark.target)
-        for mark in block.marks
-        if mark.start < stop and mark.end > start
+    piece = block.replace(
+        text=block.text[start:stop],
+        marks=cut_marks(block.marks, start, stop),
+        cells=None if block.cells is None else block.cells[start:stop],
     )
-    cells = None if block.cells is None else block.cells[start:stop]
-    piece = block.replace(text=block.text[start:stop], marks=marks, cells=cells)
-    if start:
-        piece = piece.replace(continues=True, anchors=(), entry=None)
-    return piece
+    return piece.replace(continues=True, anchors=(), entry=None) if start else piece

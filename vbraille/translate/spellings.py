@@ -5,7 +5,8 @@ from __future__ import annotations
 import unicodedata
 from enum import StrEnum
 from functools import cache
-from itertools import permutations
+from itertools import chain, permutations, repeat
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.braille.cells import UNICODE_BLANK
@@ -32,91 +33,24 @@ class Kind(StrEnum):
     """Way in which a part of a text is written that the table leaves undefined."""
 
     EQUIVALENT = "the same, composed or ordered otherwise"
-    PLAIN = "a plain spelling"
-    BARE = "without its accents"
+    PLAIN = "a plain spelling, or without accents"
     NAME = "by its name"
     MARKED = "a marker"
     UNENDING = "a marker, for liblouis does not come to an end"
-    BY_WORDS = "word by word, for liblouis does not come to an end with the whole"
 
 
 FULL_CELLS = "⠿⠿⠿"
 MARKERS = ("[?]", "(?)", "?", FULL_CELLS)
 
-# Spellings of signs, for all languages alike. Patterns of dots are the last resort for signs that
-# nearly all literary codes write so.
-_SIGNS = {
-    "•‣⁃◦▪▫●○■□◆◇►▶‧・": "• · - * ⠤",
-    "-‐‑‒–−־": "- ‐ – — ⠤",
-    "—―": "— – -- - ⠤⠤",
-    "'‘’‚‛‹›ʼʻ`´׳": "' ’ ⠄",
-    '"“”„‟«»〝〞「」『』《》〈〉״': "\" “ ” '' ⠶",
-    "′": "' ’ ⠄",
-    "″": "\" ” '' ’’ ⠄⠄",
-    "‴": "''' ’’’ ⠄⠄⠄",
-    "।": "। . ⠲",
-    "॥": "॥ .. . ⠲⠲",
-    ".۔。։។།።": ". । ⠲",
-    ",،、٬՝፣": ", ، ⠂",
-    "٫": ". , ⠂",
-    ";؛": "; ؛ ⠆",
-    ":׃": ": ⠒",
-    "!՜": "! ⠖",
-    "?؟՞": "? ؟ ⠦",
-    "(": "( ⠶",
-    ")": ") ⠶",
-    "[{【〔": "[ ( ⠶",
-    "]}】〕": "] ) ⠶",
-    "/⁄∕": "/ ⠌",
-    "*∗†‡": "* ⠔",
-    "#": "# ⠸⠹",
-    "$": "$ ⠈⠎",
-    "%": "% ⠨⠴",
-    "&": "& ⠈⠯",
-    "+": "+ ⠐⠖",
-    "<": "< ⠈⠣",
-    "=": "= ⠐⠶",
-    ">": "> ⠈⠜",
-    "@": "@ ⠈⠁",
-    "\\": "\\ ⠸⠡",
-    "^": "^ ⠈⠢",
-    "_": "_ ⠨⠤",
-    "|": "| ⠸⠳",
-    "~": "~ ⠈⠔",
-    "…": "... ⠄⠄⠄",
-    "·": "· .",
-    "¡": "!",
-    "¿": "?",
-    "×": "x",
-    "÷": ": /",
-    "©": "(c)",
-    "®": "(r)",
-    "€": "EUR eur",
-    "→": "-> ⠒⠕",
-    "←": "<- ⠪⠒",
-    "↔": "<->",
-    "≤": "<=",
-    "≥": ">=",
-    "≠": "!=",
-    "≈∼": "~",
-    "ß": "ss",
-    "ẞ": "SS",
-    "æ": "ae",
-    "Æ": "AE",
-    "œ": "oe",
-    "Œ": "OE",
-    "ø": "ö o",
-    "Ø": "Ö O",
-    "ł": "l",
-    "Ł": "L",
-    "đð": "d",
-    "ĐÐ": "D",
-    "þ": "th",
-    "Þ": "Th",
-    "ı": "i",
-    "ħ": "h",
+# Spellings of signs, for all languages alike: the signs, and what may stand for each, best first.
+# Patterns of dots are the last resort for signs that nearly all literary codes write so.
+SIGNS = {
+    sign: texts
+    for signs, *texts in map(
+        str.split, Path(__file__).with_name("signs.txt").read_text("utf-8").splitlines()
+    )
+    for sign in signs
 }
-SIGNS = {sign: texts.split() for signs, texts in _SIGNS.items() for sign in signs}
 
 SHADDA = "\u0651"
 # NUL, at which liblouis stops; soft hyphens, which part contractions; marks of the byte order.
@@ -202,36 +136,25 @@ def spellings(
     if _is_invisible(part):
         yield None, ""
     seen = {part}
-    for kind, text in _by_others(part, undefined, cells_of):
+    for kind, text in chain(
+        zip(repeat(Kind.EQUIVALENT), _equivalents(part)),
+        _small_forms(part, cells_of),
+        zip(repeat(Kind.PLAIN), chain(_plain_spellings(part), _bare_letters(part, undefined))),
+    ):
         if text not in seen:
             seen.add(text)
             yield kind, text
-    yield from _marked(part, undefined, how)
-
-
-def _by_others(
-    part: str, undefined: set[str], cells_of: Callable[[str], bytes]
-) -> Iterator[tuple[Kind, str]]:
-    for text in _equivalents(part):
-        yield Kind.EQUIVALENT, text
-    yield from _small_forms(part, cells_of)
-    for text in _plain_spellings(part):
-        yield Kind.PLAIN, text
-    for text in _bare_letters(part, undefined):
-        yield Kind.BARE, text
-
-
-def _marked(part: str, undefined: set[str], how: Undefined) -> Iterator[tuple[Kind, str]]:
-    name = unicodedata.name(part[0], f"U+{ord(part[0]):04X}").lower()
+    code = f"U+{ord(part[0]):04X}"
+    name = unicodedata.name(part[0], code).lower()
     if how is Undefined.DROP:
         yield Kind.MARKED, ""
     elif how is Undefined.CODE:
-        yield from (
-            (Kind.MARKED, text) for text in (f"[U+{ord(part[0]):04X}]", f"({ord(part[0])})")
-        )
+        yield Kind.MARKED, f"[{code}]"
+        yield Kind.MARKED, f"({ord(part[0])})"
     elif how is Undefined.NAME or is_emoji(part):
         kind = Kind.NAME if is_emoji(part) else Kind.MARKED
-        yield from ((kind, text) for text in (f"[{name}]", f"({name})"))
+        yield kind, f"[{name}]"
+        yield kind, f"({name})"
     for marker in MARKERS:
         yield Kind.MARKED, "".join(marker if sign in undefined else sign for sign in part)
     yield Kind.MARKED, FULL_CELLS

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 from vbraille.translate.liblouis import LOUIS, Answer, UnendingError
@@ -34,8 +34,6 @@ _MOST_LOST = 3  # unending words of a passage that are tried, before the rest is
 # Hebrew letters with their points composed, as no normal form has them.
 _NEEDS_ORDER = re.compile(f"[{LEFT_OUT}]|[\u064b-\u0655\u0670]{SHADDA}|[\u05b0-\u05c2]")
 _FULL = bytes(ord(sign) & 0xFF for sign in FULL_CELLS)
-# Even full cells can be eaten by a rule; they are counted all the same.
-_GIVEN_UP = (Kind.MARKED, "")
 
 
 @dataclass(slots=True)
@@ -89,27 +87,82 @@ def _write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Wr
         answer = LOUIS.translate(table, text, forms)
         if not answer.undefined and not _swallowed(table, text, answer):
             return Written(answer.masks, answer.places)
-    parts = _Parts(table, text, how)
+    parts = _parts(text)
+    part_of = [part for part in parts for _ in part.original]
     while True:
-        written, origins = parts.written()
+        written, origins = _spelt(parts)
         shapes = None if forms is None else [forms[place] for place in origins]
         answer = LOUIS.translate(table, written, shapes)
         dots = bytearray(answer.masks)
-        left = set()
+        left: list[int] = []  # characters of the text that come out undefined
         for cell in answer.undefined:
             place = answer.places[cell]
-            if _is_pattern(written[place]):
+            if "⠀" <= written[place] <= "⣿":
                 dots[cell] = ord(written[place]) & 0xFF
             else:
-                left.add(origins[place])
-        left |= parts.blank(answer.places, dots, origins)
-        if not left:
-            left = {origins[place] for place in _swallowed(table, written, answer)}
+                left.append(origins[place])
+        # A spelling of ours must not come out blank, as · does in some tables.
+        owners = [part_of[origins[place]] for place in answer.places]
+        inked = {part.start for part, dot in zip(owners, dots, strict=True) if dot}
+        left += [part.start for part in owners if part.kind and part.start not in inked]
+        left = left or [origins[place] for place in _swallowed(table, written, answer)]
         if not left:
             break
-        parts.take_next(left)
+        undefined: dict[int, set[str]] = {}
+        for place in left:
+            undefined.setdefault(part_of[place].start, set()).add(text[place])
+        for start, signs in undefined.items():
+            part = part_of[start]
+            if part.spellings is None:
+                own = partial(cells_of, table)
+                part.spellings = spellings(part.original, signs, how, own)
+            # Even full cells can be eaten by a rule; they are counted all the same.
+            part.kind, part.spelt = next(part.spellings, (Kind.MARKED, ""))
     places = [origins[min(place, len(origins) - 1)] for place in answer.places]
-    return Written(bytes(dots), places, parts.count())
+    otherwise = Counter((part.kind, part.original) for part in parts if part.kind)
+    return Written(bytes(dots), places, otherwise)
+
+
+@dataclass(slots=True)
+class _Part:
+    """A letter with its marks, spelt as it stands until it takes another spelling."""
+
+    start: int
+    original: str
+    spelt: str
+    kind: Kind | None = None
+    spellings: Iterator[tuple[Kind | None, str]] | None = None
+
+
+def _parts(text: str) -> list[_Part]:
+    parts: list[_Part] = []
+    for place, sign in enumerate(text):
+        if parts and joins(parts[-1].original, sign):
+            parts[-1].original += sign
+        else:
+            parts.append(_Part(place, sign, ""))
+    for part in parts:
+        part.spelt = in_order(part.original)
+    return parts
+
+
+def _spelt(parts: list[_Part]) -> tuple[str, list[int]]:
+    """The text as spelt now, and the character of the text that each of it stands for.
+
+    Neighbours that have a marker each have one together.
+    """
+    text: list[str] = []
+    origins: list[int] = []
+    marked = ""
+    for part in parts:
+        is_marked = part.kind is Kind.MARKED
+        if is_marked and part.spelt == marked:
+            continue
+        marked = part.spelt if is_marked else ""
+        text.append(part.spelt)
+        exact = part.spelt == part.original
+        origins += [part.start + exact * number for number in range(len(part.spelt))]
+    return "".join(text), origins
 
 
 def _swallowed(table: str, text: str, answer: Answer) -> list[int]:
@@ -143,19 +196,18 @@ def cells_of(table: str, text: str) -> bytes:
 
 def _word_by_word(table: str, text: str, forms: list[int] | None, how: Undefined) -> Written:
     """Translate each word alone; a word that does not end is a marker."""
-    whole = Written(b"", [], Counter({(Kind.BY_WORDS, text): 1}))
+    whole = Written(b"", [])
     start = lost = 0
     for word in text.split(" "):
         if start:
             whole.masks += b"\0"
             whole.places.append(start - 1)
-        shapes = None if forms is None else forms[start : start + len(word)]
-        written = Written(_FULL, [0] * len(_FULL), Counter({(Kind.UNENDING, word): 1}))
-        if not word:
-            written = Written(b"", [])
-        elif lost < _MOST_LOST:
+        written = Written(b"", [])
+        if word:
+            written = Written(_FULL, [0] * len(_FULL), Counter({(Kind.UNENDING, word): 1}))
+        if word and lost < _MOST_LOST:
             try:
-                written = _write(table, word, shapes, how)
+                written = _write(table, word, forms and forms[start : start + len(word)], how)
             except UnendingError:
                 lost += 1
         whole.masks += written.masks
@@ -163,73 +215,3 @@ def _word_by_word(table: str, text: str, forms: list[int] | None, how: Undefined
         whole.otherwise += written.otherwise
         start += len(word) + 1
     return whole
-
-
-class _Parts:
-    """A text in letters with their marks, each spelt as it stands until it takes another."""
-
-    def __init__(self, table: str, text: str, how: Undefined) -> None:
-        self._table, self._text, self._how = table, text, how
-        self._part_at: list[int] = []  # where the part begins that a character is in
-        self._originals: dict[int, str] = {}
-        start = 0
-        for place, sign in enumerate(text):
-            if place and not joins(text[start:place], sign):
-                start = place
-            self._part_at.append(start)
-            self._originals[start] = self._originals.get(start, "") + sign
-        self._spelt = {start: in_order(part) for start, part in self._originals.items()}
-        self._kinds: dict[int, Kind | None] = {}
-        self._spellings: dict[int, Iterator[tuple[Kind | None, str]]] = {}
-
-    def take_next(self, places: set[int]) -> None:
-        """Take the next spelling of the parts that hold these places."""
-        undefined: dict[int, set[str]] = {}
-        for place in places:
-            undefined.setdefault(self._part_at[place], set()).add(self._text[place])
-        for start, signs in undefined.items():
-            if start not in self._spellings:
-                part = self._originals[start]
-                self._spellings[start] = spellings(
-                    part, signs, self._how, lambda text: cells_of(self._table, text)
-                )
-            self._kinds[start], self._spelt[start] = next(self._spellings[start], _GIVEN_UP)
-
-    def blank(self, cells: list[int], dots: bytearray, origins: list[int]) -> set[int]:
-        """Parts that a spelling of ours has made blank, as · is in some tables."""
-        inked: dict[int, bool] = {}
-        for cell, dot in zip(cells, dots, strict=True):
-            start = self._part_at[origins[cell]]
-            inked[start] = inked.get(start, False) or dot != 0
-        return {start for start, kind in self._kinds.items() if kind and inked.get(start) is False}
-
-    def written(self) -> tuple[str, list[int]]:
-        """The text as spelt now, and the character of the text that each of it stands for.
-
-        Neighbours that have a marker each have one together.
-        """
-        text: list[str] = []
-        origins: list[int] = []
-        marked = ""
-        for start, spelling in self._spelt.items():
-            is_marked = self._kinds.get(start) is Kind.MARKED
-            if is_marked and spelling == marked:
-                continue
-            marked = spelling if is_marked else ""
-            text.append(spelling)
-            exact = spelling == self._originals[start]
-            origins += [start + (number if exact else 0) for number in range(len(spelling))]
-        return "".join(text), origins
-
-    def count(self) -> Counter[tuple[Kind, str]]:
-        """Parts that are written otherwise, by how."""
-        return Counter(
-            (kind, self._originals[start])
-            for start, kind in self._kinds.items()
-            if kind is not None
-        )
-
-
-def _is_pattern(sign: str) -> bool:
-    """Tell whether a character is a pattern of dots in Unicode."""
-    return "⠀" <= sign <= "⣿"

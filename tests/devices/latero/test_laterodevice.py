@@ -15,7 +15,7 @@ from vbraille.devices.latero.device import DISPLAY, open_latero
 from vbraille.devices.latero.wire import REST
 from vbraille.devices.registry import open_device
 from vbraille.errors import DeviceError, InputError
-from vbraille.simulation.controls import parse_presses
+from vbraille.simulation.controls import parse_moves
 from vbraille.simulation.lateroboard import LateroBoard
 from vbraille.testing.conformance import CHECKS
 
@@ -109,7 +109,7 @@ def test_at_the_lower_left_x_is_half_the_span_before_the_line():
 
 def test_buttons_reach_the_reader():
     with (
-        simulated(script=parse_presses("2@0s-60s")) as latero,
+        simulated(script=parse_moves("2@0s-60s")) as latero,
         open_latero(address_of(latero), None) as device,
     ):
         _, events = ticks(device, found=lambda _, events: pressed(events))

@@ -12,8 +12,6 @@ from vbraille.cli import options
 from vbraille.cli.printing import Progress, say
 
 _SCENES = (".scene", ".svg", ".svgz", ".gen", ".tx")
-_WAY: Any = {"group": "Way over a picture"}
-_PATH = ("radius", "seconds", "speed")
 
 
 @click.command(
@@ -32,12 +30,6 @@ _PATH = ("radius", "seconds", "speed")
     options.language, options.grade, options.height(group=options.FIRST),
     options.seed,
     *options.TRANSLATION[2:], *options.FEEL, options.travel, options.straying, options.band,
-    options.option("--radius", type=options.Number(0.1, 1000), metavar="MM",
-                   help="Of spot: how far it swings.", **_WAY),
-    options.option("--seconds", type=options.Number(0.01, 3600), metavar="S",
-                   help="Of spot: how long it swings.", **_WAY),
-    options.option("--speed", type=options.Number(0.1, 1000), metavar="MM_S",
-                   help="Speed of wide or spot.", **_WAY),
     options.profile(group="Places and settings"), options.settings,
 )  # fmt: skip
 @click.pass_context
@@ -51,8 +43,6 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     picture = Path(chosen["file"]).suffix.lower() in _SCENES
     if picture or hand.partition(":")[0] in ("wide", "spot"):
         _render_picture(chosen)
-    elif any(chosen[name] is not None for name in _PATH):
-        raise InputError(f"--{', --'.join(_PATH)} are for ways over a picture; leave them out")
     else:
         _render_reading(ctx, chosen)
 
@@ -80,21 +70,22 @@ def _render_reading(ctx: click.Context, chosen: dict[str, Any]) -> None:
 
 
 def _render_picture(chosen: dict[str, Any]) -> None:
-    from vbraille.pictures.paths import PathOptions, path_of
+    from vbraille.pictures.paths import path_of
     from vbraille.reading.rendering import render_picture
     from vbraille.render import MODELS
+    from vbraille.simulation.specs import parse_hand
     from vbraille.wording import count
 
     model = MODELS[chosen["model"] or "stress2-8x8"]
-    hand = chosen["hand"] or "wide"
-    way = PathOptions(hand, **{name: chosen[name] for name in _PATH})
+    spec = chosen["hand"] or "wide"
+    hand = parse_hand(spec, chosen["seed"])
     rendered, notes = render_picture(
         chosen["out"],
         chosen["file"],
         model,
-        lambda canvas: path_of(way, canvas, model.display.span_mm, chosen["rate"]),
+        lambda canvas: path_of(hand, canvas, model.display.span_mm, chosen["rate"]),
         chosen["rate"],
-        hand,
+        spec,
         replace_file=chosen["force"],
         done=Progress().at,
     )

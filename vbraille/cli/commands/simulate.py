@@ -25,12 +25,14 @@ def _defects() -> Iterable[str]:
     return (each.value for each in Defect)
 
 
-_script = options.option("--script", type=click.Path(), metavar="FILE",
-                         help="Events of buttons and knobs, such as 2.5s press 1.")  # fmt: skip
-_press = options.option("--press", metavar="N@TIME", default="", help="Buttons to press, such as "
-                        "1@2.5s,2@4s.")  # fmt: skip
-_drop = options.option("--drop", type=_share, default=0.0, help="Share of messages that are lost.",
-                       **_FAULTS)  # fmt: skip
+_press = options.option("--press", metavar="MOVES", default="", help="Moves of buttons and knobs, "
+                        "such as 1@2.5s, 2@4s-5s or knob 1 0.8@4s.")  # fmt: skip
+
+
+def _time(name: str, help: str) -> Callable:  # noqa: A002 - click's word
+    """Return the option of a time after which, or for which, something goes wrong."""
+    return options.option(name, type=options.Duration(), default=0.0, metavar="TIME", help=help,
+                          **_FAULTS)  # fmt: skip
 
 
 @click.group(cls=options.Group)
@@ -46,20 +48,17 @@ def command() -> None:
     options.option("--axes", type=click.Choice(["x", "xy", "xyθ"]), default="x", show_default=True,
                    help="Axes that are measured."),
     options.option("--unplaced", is_flag=True, help="Do not know the place before it is told."),
-    _script, _press,
+    _press,
     options.travel, options.height,
     options.rate(type=options.whole(50, 1000)),
-    _drop,
+    options.option("--drop", type=_share, default=0.0, help="Share of messages that are lost.",
+                   **_FAULTS),
     options.option("--corrupt", type=_share, default=0.0, help="Share of messages with a wrong "
                    "bit.", **_FAULTS),
-    options.option("--stall", type=options.Duration(), default=0.0, metavar="TIME",
-                   help="Pause each second, such as 200ms.", **_FAULTS),
-    options.option("--unplug-every", type=options.Duration(), default=0.0, metavar="TIME",
-                   help="Time between unpluggings, such as 5s; needs --link.", **_FAULTS),
-    options.option("--hold", type=options.Duration(), default=0.0, metavar="TIME",
-                   help="Time for which a USB adapter holds bytes, such as 16ms.", **_FAULTS),
-    options.option("--boot", type=options.Duration(), default=0.0, metavar="TIME",
-                   help="Time for which the board starts, such as 1.5s.", **_FAULTS),
+    _time("--stall", "Pause each second, such as 200ms."),
+    _time("--unplug-every", "Time between unpluggings, such as 5s; needs --link."),
+    _time("--hold", "Time for which a USB adapter holds bytes, such as 16ms."),
+    _time("--boot", "Time for which the board starts, such as 1.5s."),
     options.option("--defect", type=options.Known("defect", _defects), metavar="NAME",
                    help="Way in which it is built wrong.", **_FAULTS),
 )  # fmt: skip
@@ -70,7 +69,7 @@ def serial(**chosen: Any) -> None:
     from vbraille.errors import InputError
     from vbraille.render import MODELS
     from vbraille.simulation.carriage import area_of
-    from vbraille.simulation.controls import Controls
+    from vbraille.simulation.controls import Controls, parse_moves
     from vbraille.simulation.pty import Link, Port
     from vbraille.simulation.simulator import Defect, Faults, Simulator
     from vbraille.simulation.specs import parse_hand
@@ -98,7 +97,7 @@ def serial(**chosen: Any) -> None:
             seed=chosen["seed"],
         )
         hand = parse_hand(chosen["hand"], chosen["seed"])
-        controls = Controls(_events(chosen))
+        controls = Controls(parse_moves(chosen["press"]))
         with _running() as (stopped, keys):
             port = Port(Link(chosen["link"]) if chosen["link"] else None)
             try:
@@ -128,17 +127,18 @@ def serial(**chosen: Any) -> None:
                    help="Lines of the page that the hand reads."),
     options.option("--wait", type=options.Duration(), default=1.0, metavar="TIME",
                    help="Time for which the hand waits at the lower left."),
-    _script, _press,
+    _press,
 )  # fmt: skip
 def latero(**chosen: Any) -> None:
     """Simulate a Latero on the network."""
     from vbraille.devices.latero.wire import BUTTONS, PORT
     from vbraille.errors import InputError
     from vbraille.render.braille.models import LATERO
+    from vbraille.simulation.controls import parse_moves
     from vbraille.simulation.laterosim import LateroCarriage, LateroSimulator
     from vbraille.simulation.specs import parse_hand
 
-    events = _events(chosen)
+    events = parse_moves(chosen["press"])
     if any(event.knob or event.number > len(BUTTONS) for event in events):
         raise InputError("a Latero has two buttons, 1 and 2, and no knobs")
     hand = parse_hand(chosen["hand"], chosen["seed"])
@@ -158,14 +158,6 @@ def latero(**chosen: Any) -> None:
     board = simulator.board
     say(f"summary: seconds {simulator.now_us / 1e6:.1f}, frames {board.fulls}, "
         f"blades {'at rest' if board.at_rest else 'not at rest'}")  # fmt: skip
-
-
-def _events(chosen: dict[str, Any]) -> tuple[Any, ...]:
-    """Events of the script and the presses."""
-    from vbraille.simulation.controls import load_script, parse_presses
-
-    script = load_script(chosen["script"]) if chosen["script"] else ()
-    return (*script, *parse_presses(chosen["press"]))
 
 
 @contextmanager

@@ -1,61 +1,13 @@
-"""Scripts and keys that move buttons and knobs."""
+"""Moves at set times, and keys, that move buttons and knobs."""
 
 import pytest
 
 from vbraille.errors import InputError
-from vbraille.simulation.controls import (
-    SHORT_S,
-    Controls,
-    load_script,
-    parse_presses,
-    parse_script,
-)
-
-SCRIPT = """# what a finger does
-2.5s press 1
-
-4s knob 1 0.8
-3s release 1
-250ms knob 4 0
-"""
+from vbraille.simulation.controls import SHORT_S, Controls, parse_moves
 
 
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        ("press 1", r"'press 1' is no event; write a time and what is done then, such as 2.5s"),
-        ("2 press 1", "is no event"),
-        ("-1s press 1", "is no event"),
-        ("2s push 1", "is no event"),
-        ("2s press", "is no event"),
-        ("2s press 1 2", "is no event"),
-        ("2s knob 1", "is no event"),
-        ("2s knob 1 high", "is no event"),
-        ("2s press 9", "button is 9; it must be 1 to 8"),
-        ("2s release 0", "button is 0; it must be 1 to 8"),
-        ("2s knob 5 0.1", "knob is 5; it must be 1 to 4"),
-        ("2s knob 1 1.1", "position of the knob is 1.1; it must be 0 to 1"),
-        ("4000s press 1", "time is 4000 s; it must be 0 to 3600 s"),
-    ],
-)
-def test_a_bad_line_is_named_by_its_number(line, said):
-    with pytest.raises(InputError, match=rf"script\.txt, line 3: .*{said}"):
-        parse_script(f"1s press 1\n\n{line}\n", "script.txt")
-
-
-def test_a_script_that_cannot_be_read_is_one_sentence(tmp_path):
-    with pytest.raises(InputError, match="there is no file"):
-        load_script(str(tmp_path / "script.txt"))
-
-
-def test_a_script_in_a_file(tmp_path):
-    path = tmp_path / "script.txt"
-    path.write_text(SCRIPT)
-    assert load_script(str(path)) == parse_script(SCRIPT, "")
-
-
-def test_buttons_and_knobs_stand_as_the_script_has_moved_them_so_far():
-    controls = Controls((*parse_script(SCRIPT, ""), *parse_presses("8@1s-2.75s")))
+def test_buttons_and_knobs_stand_as_they_were_moved_so_far():
+    controls = Controls(parse_moves("1@2.5s-3s, knob 1 .8@4s,8@1s-2.75s,knob 4 0@0.25s"))
     assert controls.knobs == [0.5] * 4
     found = {}
     for now_s in (0.0, 0.25, 1.0, 2.5, 2.75, 3.0, 60.0):
@@ -72,10 +24,14 @@ def test_buttons_and_knobs_stand_as_the_script_has_moved_them_so_far():
     }
 
 
-def test_events_of_one_time_are_done_in_the_order_of_the_script():
-    controls = Controls(parse_script("1s knob 1 0.2\n1s knob 1 0.9\n1s knob 1 0.4\n", ""))
-    controls.advance(1.0)
-    assert controls.knobs[0] == 0.4
+@pytest.mark.parametrize(
+    "move",
+    ["1", "9@1s", "0@1s", "1@1", "1@2s-2s", "1@-1s", "1@nans", "knob 5 0.1@1s", "knob 1 1.1@1s",
+     "knob 1@1s", "1@1s,,2@2s"],
+)  # fmt: skip
+def test_what_is_no_move_is_refused(move):
+    with pytest.raises(InputError, match="no button and no knob"):
+        parse_moves(move)
 
 
 def test_a_key_presses_a_button_for_a_moment():
