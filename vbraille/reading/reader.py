@@ -118,7 +118,11 @@ class Reader(Surface):
         self.beside_mapping: Mapping | None = None  # that the live view shows beside the array
         self.lines_read = 0
         self._too_fast_said = self._figure_due = False
-        self.show(self._line_to_begin())
+        self._begins_at = self._line_to_begin()
+
+    def begin(self) -> None:
+        """Put the first line under the hand, and show it."""
+        self.show(self._begins_at)
 
     def _line_to_begin(self) -> Line:
         """Line at the place that is kept, or the first of those to read."""
