@@ -26,7 +26,6 @@ from vbraille.scene.bitmap import WHOLE, opaque
 from vbraille.scene.bounds import Box, around, bounds, drawn_radius_mm, is_everywhere, reach_mm
 from vbraille.scene.dotting import PlacedDot, rows_of
 from vbraille.scene.joints import Cycle, axial_cycle, cue_cycle, stroke_cycles
-from vbraille.scene.measures import travel_deg
 from vbraille.scene.patterns import (
     Circle,
     Dots,
@@ -404,7 +403,7 @@ class _Writer:
                 self.say(i.LEVEL, 1.0)
                 self.say(i.VIBRATE, pattern.frequency_hz, 1.0)
             case LinearGrating():
-                angle = math.radians(travel_deg(pattern.wave_angle_deg, pattern.ridge_angle_deg))
+                angle = math.radians(pattern.travel_deg)
                 right, down = math.cos(angle), math.sin(angle)
                 start = pattern.start_mm[0] * right + pattern.start_mm[1] * down
                 self.say(i.LINEAR, *self._waveform(pattern), right, down, start)
