@@ -338,6 +338,21 @@ def test_rulers_that_nobody_could_read_are_refused(scene, call, tmp_path):
     )
 
 
+def test_a_key_is_a_second_file(call, tmp_path):
+    path = tmp_path / "cell.scene"
+    path.write_text("""
+        canvas = { width_mm = 120, height_mm = 90 }
+        [[elements]]
+        kind = "label"
+        text = "mitochondrion"
+        place_mm = [80, 40]
+    """)
+    done = call("map", path, "--key", "--out", tmp_path / "cell.png")
+    assert done.code == 0
+    assert (tmp_path / "cell-key.png").is_file()
+    assert "label, text 1 mitochondrion" in done.out
+
+
 # The kernel's own word: `ru_maxrss` would begin with what the tests' process has.
 MEASURED = """
 import sys

@@ -13,6 +13,7 @@ from msgspec.structs import replace
 from vbraille.errors import InputError
 from vbraille.pictures.composing import compose
 from vbraille.pictures.index import distance_mm, is_open, label_of, outlines
+from vbraille.pictures.keys import crowded
 from vbraille.render.braille.models import STRESS2_8X8
 from vbraille.render.compiling import SceneMap
 from vbraille.scene.bounds import Box, bounds
@@ -100,6 +101,9 @@ def felt_advice(loaded: LoadedScene) -> tuple[str, ...]:
     Where parts are there at some zooms only, the picture is looked at from each of these on.
     """
     said = dict.fromkeys(_Check(loaded).advice())
+    for label in crowded(loaded):
+        text = " ".join(label.text.split())
+        said[f'label "{text}" does not fit; map and feel show a number for it with --key'] = None
     for zoom in levels(*loaded.opened.resolved.elements):
         try:
             advice = [*_Check(loaded.zoomed(zoom)).advice()]
