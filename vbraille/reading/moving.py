@@ -205,7 +205,7 @@ def number_bookmark(reader: Reader) -> None:
 def _set(reader: Reader, name: str) -> None:
     names = reader.kept.bookmarks
     name = name or str(next(n for n in range(1, len(names) + 2) if str(n) not in names))
-    reader.kept.set_bookmark(name, reader.place, around(reader.line))
+    reader.kept.mark(name, reader.place, around(reader.line))
     reader.say(f"bookmark {name}: set at {reader.named()}")
 
 
@@ -217,7 +217,7 @@ def go_to_bookmark(reader: Reader) -> None:
 @command("delete a bookmark", "delete X", "X")
 def delete_bookmark(reader: Reader) -> None:
     def remove(name: str, _place: int) -> None:
-        reader.kept.remove_bookmark(name)
+        reader.kept.mark(name)
         reader.say(f"bookmark {name}: deleted")
 
     _choose(reader, "delete bookmark", remove)
