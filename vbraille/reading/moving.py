@@ -40,12 +40,12 @@ def _go(reader: Reader, step: int, *, at_end: bool = False) -> None:
     reader.announce()
 
 
-@command("on along the line, then the next line", "right", also="pins:FWINRT")
+@command("pan right, then to the next line", "right", also="pins:FWINRT")
 def pan_right(reader: Reader) -> None:
     _pan(reader, 1)
 
 
-@command("back along the line, then the line before", "left", also="pins:FWINLT")
+@command("pan left, then to the previous line", "left", also="pins:FWINLT")
 def pan_left(reader: Reader) -> None:
     _pan(reader, -1)
 
@@ -130,7 +130,7 @@ def slower(reader: Reader) -> None:
 def _scroll(reader: Reader, cells_s: float) -> None:
     said = f"autoscroll: {cells_s:.1f} cells a second" if cells_s else "autoscroll: off"
     if cells_s == reader.scroll_cells_s:
-        reader.refuse(f"{said} is the {'most' if cells_s == max(_SPEEDS) else 'least'}")
+        reader.refuse_beyond(said, up=cells_s == max(_SPEEDS))
     else:
         reader.scroll(cells_s)
         reader.say(said)
