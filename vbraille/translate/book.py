@@ -136,20 +136,17 @@ class Book:
         assert own is not None
         named = own.info.language if own.info is not None else own.name.partition("-")[0]
         known = [tag for tag in (self.language, self.source.language) if tag] or [named]
-        if language.lower() in [tag.lower() for tag in known]:
-            return own
         try:
             usual = find_table(language)
             if usual in (own.name, *map(_named, known)):
                 return own
-            usual = _named(language, self.grade, usual)
-            found = BrailleTable(usual, own.undefined)
+            found = BrailleTable(_named(language, self.grade, usual), own.undefined)
             if found.eight_dots and not own.eight_dots:
                 six = six_dot_table(language)
-                return own if six is None else BrailleTable(six, own.undefined)
-            return found
+                found = own if six is None else BrailleTable(six, own.undefined)
         except InputError:
             return own
+        return found
 
     def _between_signs(self, part: Written, tag: str, following: str) -> Written:
         """A passage in another language between the signs that say so."""

@@ -128,12 +128,8 @@ def _grid(rows: list[list[_Cell]]) -> list[list[_Cell | None]]:
                 following = next(waiting, None)
         grid.append(line)
     # A row that is one cell does not make the table wider.
-    parted = [len(set(map(id, line))) > 1 for line in grid]
-    most = max([1, *(len(line) for line, is_parted in zip(grid, parted, strict=True) if is_parted)])
-    return [
-        line[:most] + [None] * (most - len(line)) if is_parted or len(line) < most else line
-        for line, is_parted in zip(grid, parted, strict=True)
-    ]
+    most = max((len(line) for line in grid if len(set(map(id, line))) > 1), default=1)
+    return [line[:most] + [None] * (most - len(line)) for line in grid]
 
 
 def joined(blocks: list[Block], between: str, like: Block | None = None) -> Block:

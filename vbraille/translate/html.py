@@ -314,7 +314,16 @@ class Walker:
             case "a" | "noteref" | "annoref":
                 self._link(element, words)
                 return
-            case "img":
+            case "input" if element.get("type").lower() not in ("image", "hidden"):
+                if (
+                    element.get("type").lower() != "checkbox"
+                    or "disabled" not in element.attributes
+                ):
+                    self._unshown("form field", _label(element) or element.get("value"))
+                else:
+                    self._add("☒" if "checked" in element.attributes else "☐")
+                    self._blank = True
+            case "img" | "input" if element.get("type").lower() != "hidden":
                 self._img(element, words)
             case "svg":
                 self._svg(element)
@@ -322,8 +331,6 @@ class Walker:
             case "math":
                 self._math(element)
                 return
-            case "input":
-                self._input(element, words)
             case "table":
                 self._table(element, words)
                 return
@@ -459,16 +466,6 @@ class Walker:
         elif text[0].isalnum() or text[0] == "\\":
             self._blank = self._blank or "".join(self._text[-1:]).isalnum()
         self._add(text)
-
-    def _input(self, element: Element, words: set[str]) -> None:
-        kind = element.get("type").lower()
-        if kind == "image":
-            self._img(element, words)
-        elif kind == "checkbox" and "disabled" in element.attributes:
-            self._add("☒" if "checked" in element.attributes else "☐")
-            self._blank = True
-        elif kind != "hidden":
-            self._unshown("form field", _label(element) or element.get("value"))
 
     def _table(self, element: Element, words: set[str]) -> None:
         group = next(self._groups)
