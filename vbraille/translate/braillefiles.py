@@ -61,7 +61,7 @@ def _blocks(
     passed, first = 0, ""
     for number, rows in enumerate(pages, 1):
         if numbered:  # by the file, which does not write the number
-            yield Block("", BlockKind.PAGE, cells=Cells.from_file(""), group=number)
+            yield Block("", BlockKind.PAGE, cells=Cells.from_brf(""), group=number)
         for place, row in enumerate(rows, 1):
             wrong = strange.findall(row)
             if wrong and not passed:
@@ -69,7 +69,7 @@ def _blocks(
                 first = f"U+{ord(wrong[0]):04X} in {what} {place}{page}"
             passed += len(wrong)
             text = strange.sub("", row)
-            yield Block(text, BlockKind.LINE, cells=Cells.from_file(text))
+            yield Block(text, BlockKind.LINE, cells=Cells.from_brf(text))
     if passed:
         source.note(
             f"{source.name} has {count(passed, 'character')} that are no braille, passed over; "
