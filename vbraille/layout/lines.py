@@ -13,16 +13,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.braille.cells import UNICODE_BLANK, Cells, mask_of
+from vbraille.errors import InputError
 from vbraille.layout.wrapping import Piece, wrap
-from vbraille.translate.blocks import BlockKind
+from vbraille.translate import BlockKind, Book, text_source
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
-    from vbraille.translate.blocks import Block
-    from vbraille.translate.book import Book
+    from vbraille.braille.geometry import Geometry
+    from vbraille.display import Display
+    from vbraille.translate import Block, BrailleTable
 
 _REMEMBERED = 64  # blocks
 _LINES = 1 << 20  # more than a block has
@@ -296,3 +298,65 @@ def _cells(cells: Cells, piece: Piece) -> Cells:
     masks = np.frombuffer(piece.before + own.masks.tobytes() + piece.after, np.uint8)
     pad = (len(piece.before), len(piece.after))
     return Cells(masks, np.pad(own.starts, pad, mode="edge"), own.end)
+
+
+def cells_per_line(geometry: Geometry, display: Display) -> int:
+    """Number of cells that a line has on a display.
+
+    Raises
+    ------
+    InputError
+        If there is no room for a single cell.
+    """
+    try:
+        return geometry.cells_per_line(display.span_mm)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+
+
+def lay_out_text(text: str, width: int, table: BrailleTable, *, keep_lines: bool = False) -> Layout:
+    """Lay out a string.
+
+    Parameters
+    ----------
+    text
+        Text to lay out; blank lines separate its paragraphs.
+    width
+        Number of cells in a line.
+    table
+        Table by which the text is translated.
+    keep_lines
+        Whether each line of the text stays a line, at the margin; otherwise paragraphs are filled,
+        each with an indent.
+
+    Raises
+    ------
+    InputError
+        If the text has nothing to show.
+    """
+    if not text.strip():
+        raise InputError("the text has nothing to read in it; give some")
+    return Layout(Book(text_source(text, keep_lines=keep_lines), table), width)
+
+
+def wrap_text(text: str, table: BrailleTable, width: int | None = None) -> list[bytes]:
+    """Dot masks of the lines of a paragraph, which is one line without a width.
+
+    Parameters
+    ----------
+    text
+        Text of the paragraph.
+    table
+        Table by which it is translated.
+    width
+        Number of cells in a line.
+    """
+    words = " ".join(text.split())
+    cells = table.translate(words)
+    masks = cells.masks.tobytes()
+    if width is None:
+        return [masks]
+    return [
+        masks[piece.start : piece.stop]
+        for piece in wrap(masks, cells.starts.tolist(), words, width)
+    ]

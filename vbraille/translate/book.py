@@ -178,10 +178,9 @@ class Book:
 
     def _note_script(self, block: Block, otherwise: Counter[tuple[Kind, str]]) -> None:
         """Note once that most of a block is in a script that its table does not know."""
-        letters = [sign for sign in block.text if sign.isalpha()]
-        marked = [part[0] for kind, part in otherwise.elements() if kind is Kind.MARKED]
-        marked = [sign for sign in marked if sign.isalpha()]
-        if self.table is None or len(marked) * 2 <= len(letters):
+        signs = [part[0] for kind, part in otherwise.elements() if kind is Kind.MARKED]
+        marked = list(filter(str.isalpha, signs))
+        if self.table is None or len(marked) * 2 <= sum(map(str.isalpha, block.text)):
             return
         script = unicodedata.name(marked[0], "unknown").partition(" ")[0].capitalize()
         if script not in self._scripts:

@@ -251,11 +251,8 @@ def _refused(stream: BinaryIO, sample: bytes) -> str:
         return ""
     stream.seek(0)
     content = stream.read()
-    if "EncryptedPackage".encode("utf-16-le") in content:
-        return "locked with a password; open it with that and save it without one"
-    if "WordDocument".encode("utf-16-le") in content:
-        return "a Word document of before 2007 (DOC); save it as DOCX or ODT"
-    return "an old Office document, not text; save it as DOCX or ODT"
+    names = _UNLIKE["ole"].items()
+    return next(said for name, said in names if name.encode("utf-16-le") in content)
 
 
 def _zipped(stream: BinaryIO, name: str) -> str:
