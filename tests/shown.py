@@ -6,9 +6,10 @@ import numpy as np
 
 from tests.render.braille.reference import deflections
 from vbraille.display import Display
-from vbraille.render import STRESS2, VBD, BrailleStyle, Mapping
+from vbraille.render import STRESS2, VBD, BrailleStyle, Mapping, kernels
 from vbraille.render.braille.mappings import NONE
 from vbraille.render.program import Program
+from vbraille.render.work import NO_PART
 
 STRESS2_ARRAY = STRESS2.display
 VBD_ARRAY = VBD.display
@@ -43,3 +44,8 @@ def full(display) -> Program:
     """A picture of actuators all the way up, wherever the array is."""
     mapping = Mapping("up", *((NONE,) * display.rows,) * 2, (True,) * display.rows)
     return replace(STRESS2.style, mapping=mapping).render(np.zeros(1, np.uint8), display)
+
+
+def part_of(program, y_mm, before=NO_PART):
+    """Tell which part of a picture is under an array with its centre at y."""
+    return kernels.part_of(program.numbers, y_mm, before)

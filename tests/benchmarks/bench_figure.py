@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tests.benchmarks.timing import Result, ratio
+from tests.shown import part_of
 from vbraille.render import STRESS2_8X8, Straying
 from vbraille.render.compiling import compile_scene
-from vbraille.render.figures import page_with_figure
+from vbraille.render.figures import FigureAt, page_with_figures
+from vbraille.render.labels import Assets
 from vbraille.scene.patterns import Circle, Fill, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke
@@ -80,8 +82,9 @@ def programs() -> tuple[Program, Program, Program, NDArray[np.float64]]:
         masks[: CELLS // 2 - 1] if FROM_LINE <= number < TO_LINE else masks
         for number, masks in enumerate(lines)
     ]
-    scene, assets = page_with_figure(
-        beside, model.style, figure(right_mm - left_mm, bottom_mm - top_mm), (left_mm, top_mm)
+    drawn = figure(right_mm - left_mm, bottom_mm - top_mm)
+    scene, assets = page_with_figures(
+        beside, model.style, (FigureAt(drawn, (left_mm, top_mm), Assets()),)
     )
     both = compile_scene(scene, model.display, assets)
     free = model.style.replace(straying=Straying("free")).render_page(lines, model.display)
@@ -92,7 +95,7 @@ def programs() -> tuple[Program, Program, Program, NDArray[np.float64]]:
 def over(program: Program, places: NDArray[np.float64]) -> Callable[[], None]:
     """Frames of a program at places, each by its own call."""
     out = np.zeros(program.shape)
-    poses = [(x, y, program.part_of(y)) for x, y in places.T.tolist()]
+    poses = [(x, y, part_of(program, y)) for x, y in places.T.tolist()]
 
     def frames() -> None:
         for x, y, part in poses:

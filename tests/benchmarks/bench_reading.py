@@ -97,6 +97,7 @@ def _frame() -> Result:
         layout = book_of(Path(TEXT).read_text(encoding="utf-8"), width)
         kept = Places(None, print).book("", Path(), "")
         reader = Reader(layout, device, [Heard()], kept)
+        reader.begin()
         loop = Exploration(reader, device, NoKeyboard(), Heard())
         for key in "nnnpnpn" * 5:
             for _ in range(15):

@@ -8,10 +8,7 @@ from itertools import count
 import pytest
 
 from tests.conventional.handytech import (
-    FWINLT,
-    FWINRT,
     HOME,
-    ROUTE_0,
     Brltty,
     needs_brltty,
     until,
@@ -22,7 +19,6 @@ from vbraille.conventional.display import (
     ConventionalDisplay,
     DisplayAway,
     DisplayStands,
-    KeyPressed,
 )
 from vbraille.errors import InputError
 
@@ -47,21 +43,15 @@ def heard(display, kind):
 
 
 @needs_brltty
-def test_cells_come_to_the_display_and_keys_from_it(brltty, display):
+def test_cells_come_to_the_display(brltty, display):
     assert heard(display, DisplayStands) == DisplayStands("HandyTech", "mdlr", 40, 1)
     shown_ns = time.monotonic_ns()
     number = display.show(SHOWN)
     brltty.display.wait(SHOWN)
     taken = until(lambda: [m for m in display.poll() if m == CellsTaken(number, m.at_ns)])[0]
     assert shown_ns < taken.at_ns < time.monotonic_ns()
-    for key, name, argument in (
-        (ROUTE_0 + 15, "ROUTE", 15),
-        (FWINRT, "FWINRT", 0),
-        (FWINLT, "FWINLT", 0),
-        (HOME, "HOME", 0),
-    ):
-        brltty.display.press(key)
-        assert heard(display, KeyPressed) == KeyPressed(name, argument)
+    for _ in range(20):
+        brltty.display.press(HOME)  # its keys are nothing to it, and hold nothing up
     # More than there is room for is cut, and less is followed by blank cells.
     display.show(bytes((1,)) * 50)
     brltty.display.wait(bytes((1,)) * 40)

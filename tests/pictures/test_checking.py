@@ -31,7 +31,7 @@ def advice(tmp_path, *elements, canvas="{ width_mm = 200, height_mm = 150 }"):
     path.write_text(f"canvas = {canvas}\nelements = [{', '.join(elements)}]\n")
     loaded = load_scene(path, STYLE)
     first = check_scene(loaded.opened, loaded.boxes())
-    return [*first.advice, *first.vibrations, *felt_advice(loaded)]
+    return [*first.advice, *felt_advice(loaded)]
 
 
 SOLID = 'fill = { texture = { kind = "uniform" } }'

@@ -75,6 +75,7 @@ class Reading:
         layout = Layout(self.book, width or cells_per_line(model.style.geometry, given.display))
         kept = places.book(digest, Path(f"/{digest}"), "book")
         self.reader = Reader(layout, self.device, [self.heard], kept, fixed=bool(width), **how)
+        self.reader.begin()
         self.loop = Exploration(self.reader, self.device, NoKeyboard(), self.heard)
 
     def __enter__(self):

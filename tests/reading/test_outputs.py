@@ -1,17 +1,19 @@
 """Outputs that may have to wait: speech by a server, pins by a real BRLTTY; the loop never does."""
 
+import sys
 import time
+from types import SimpleNamespace
 
 import pytest
 
 from tests.conventional.handytech import LNDN, ROUTE_0, Brltty, needs_brltty, until
 from tests.reading.bench import Reading
-from tests.reading.ssipserver import SsipServer
 from vbraille.errors import InputError
 from vbraille.reading.outputs import Behind, Cue, Speech, system_module
 from vbraille.reading.pins import Pins
 from vbraille.translate import BrailleTable
 
+TOLD = []
 WORDS = " ".join(f"word{n}" for n in range(60))
 
 
@@ -59,21 +61,28 @@ def test_an_output_that_fails_says_so_once():
     assert said == ["no speech: nothing there"]
 
 
-@pytest.mark.skipif(not installed("speechd"), reason="python3-speechd is not installed")
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")  # speechd's
-def test_sentences_and_lines_are_spoken_and_cells_are_not(tmp_path, monkeypatch):
-    path = tmp_path / "speech.sock"
-    monkeypatch.setenv("SPEECHD_ADDRESS", f"unix_socket:{path}")
-    with SsipServer(path) as server, Reading("one two", hand="sweep:1") as reading:
+class Voice:
+    """Client of Speech Dispatcher, as python3-speechd has it, that keeps what it is told."""
+
+    def __init__(self, name):
+        TOLD.append((name,))
+
+    def __getattr__(self, name):
+        return lambda *words: TOLD.append((name, *words))
+
+
+def test_sentences_and_lines_are_spoken_and_cells_are_not(monkeypatch):
+    monkeypatch.setitem(sys.modules, "speechd", SimpleNamespace(SSIPClient=Voice))
+    with Reading("one two", hand="sweep:1") as reading:
         speech = Behind("speech", lambda: Speech("fr-CA"), print)
         reading.reader.outputs.append(speech)
         reading.press("i")
-        server.until(lambda server: any("line 1" in said for said in server.said))
+        until(lambda: TOLD[-1][0] == "speak" and "line 1" in TOLD[-1][1])
         speech.show(reading.reader)
-        server.until(lambda server: "one two" in server.said)
         speech.say("cells: ⠁")
         speech.close()
-        assert "cells: ⠁" not in server.said
+    assert ("set_language", "fr") in TOLD
+    assert TOLD[-2:] == [("speak", "one two"), ("close",)]
 
 
 @pytest.mark.parametrize("spec", ["foo", "brlapi:x", "brlapi:host:port"])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from tests.render.test_page import frame_of, swing
+from tests.shown import part_of
 from vbraille.braille.cells import PLACES
 from vbraille.render import LATERO, STRESS2, STRESS2_8X8, VBD, Straying
 from vbraille.render.braille.style import BAND_BOUNDS, MOST_TILT_RAD
@@ -106,5 +107,5 @@ def test_the_band_of_a_style_is_that_of_its_pages():
     style = replace(STRESS2.style, straying=Straying(band=0.6))
     page = style.render_page([np.full(4, 63, np.uint8)] * 3, STRESS2.display)
     pitch_mm = style.geometry.line_pitch_mm
-    assert page.part_of(1.29 * pitch_mm, 0) == 0
-    assert page.part_of(1.31 * pitch_mm, 0) == 1
+    assert part_of(page, 1.29 * pitch_mm, 0) == 0
+    assert part_of(page, 1.31 * pitch_mm, 0) == 1

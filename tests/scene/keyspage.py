@@ -72,7 +72,7 @@ def _takes(field, kinds):
     if "$ref" in field:
         return kinds[field["$ref"].rpartition("/")[2]]
     if "anyOf" in field:
-        every = [_takes(one, kinds) for one in field["anyOf"]]
+        every = [_takes(one, kinds) for one in field["anyOf"] if one != {"type": "null"}]
         return "a pattern" if len(every) > 3 else " or ".join(every)
     kind = field.get("type")
     if kind == "string":

@@ -1,7 +1,5 @@
 """Rectangles outside which patterns and their masks are 0."""
 
-import math
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -19,7 +17,6 @@ from vbraille.scene.patterns import (
     Image,
     ImageDots,
     PathShape,
-    Polygon,
     StraightLine,
     Tile,
     Use,
@@ -38,15 +35,12 @@ CIRCLE = Circle(center_mm=(40, 20), radius_mm=5, fill=Fill(texture=Uniform()))
         (LINE, Box(8, 18, 32, 27)),
         (CIRCLE, Box(35, 15, 45, 25)),
         (Circle(center_mm=(0, 0), radius_mm=5, dots=Dotting()), Box(-6, -6, 6, 6)),
-        (Polygon(vertices_mm=((0, 0), (9, 0), (5, 7)), stroke=STROKE), Box(-2, -2, 11, 9)),
         (
             PathShape(contours_mm=(((0, 0), (1, 1)), ((9, 3), (4, 4))), stroke=STROKE),
             Box(-2, -2, 11, 6),
         ),
         (Dots(centers_mm=((1, 2), (5, 0)), dot=DotStyle(radius_mm=0.5)), Box(0.5, -0.5, 5.5, 2.5)),
-        (Uniform(), None),
         (Tile(width_mm=4, height_mm=4, part=LINE), None),
-        (Image(file="a.png"), None),
         (Group(operation="maximum", parts=(LINE, CIRCLE)), Box(8, 15, 45, 27)),
         (Group(operation="multiply", parts=(LINE, Uniform())), Box(8, 18, 32, 27)),
         (Group(operation="multiply", parts=(LINE, CIRCLE)), EMPTY),
@@ -141,14 +135,3 @@ def test_an_images_box_is_no_larger_than_its_mask():
     image = Image(file="whole.png", place_mm=(10, 20), width_mm=11, height_mm=7)
     # One pixel of 1 mm for the edge, of which half a pixel is still bilinear beyond its middle.
     assert bitmap_box(bitmap_of(image)) == pytest.approx((9.5, 19.5, 21.5, 27.5))
-
-
-def test_boxes_are_joined_and_cut():
-    one, other = Box(0, 0, 2, 3), Box(1, 1, 5, 2)
-    assert one.joined(other) == Box(0, 0, 5, 3)
-    assert one.common(other) == Box(1, 1, 2, 2)
-    assert one.common(Box(4, 4, 5, 5)) == EMPTY
-    assert EMPTY.joined(one) == one
-    assert EMPTY.grown(1).is_empty
-    assert one.grown(1) == Box(-1, -1, 3, 4)
-    assert math.isinf(EMPTY.left)

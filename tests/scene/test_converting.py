@@ -55,13 +55,13 @@ def test_pictures_are_named_as_they_are_seen_from_the_new_file(old, where):
         assert names == ["old/a.png", "old/masks/b.png", "c.png"]
 
 
-def test_comments_say_where_an_element_comes_from_and_what_differs(old):
+def test_comments_say_what_differs_and_where_an_element_comes_from(old):
     text = convert_scene(old, old.parent).text
-    assert text.startswith("# Converted from picture.gen.\n\ntitle = ")
-    above, _, _ = text.partition('[[elements]]\nkind = "circle"')
-    last = above.rpartition("\n\n")[2]
-    assert last.startswith("# From line ")
-    assert "colour is not known here" in last
+    top, _, _ = text.partition("\n\ntitle = ")
+    assert top.startswith("# Converted from picture.gen.\n# line ")
+    assert "colour is not known here" in top
+    above, _, _ = text.partition('\n[[elements]]\nkind = "circle"')
+    assert above.rpartition("\n")[2].startswith("# From line ")
     assert all(len(line) <= 72 for line in text.splitlines() if line.startswith("#"))
 
 

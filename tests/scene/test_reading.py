@@ -94,14 +94,6 @@ REFUSED = {
         element("circle", "center_mm = [1, 2]", "radius = 3", "stroke = {}"),
         "line 7: radius: there is no such key; did you mean radius_mm?",
     ),
-    "a misspelt key within": (
-        f"{CANVAS}{CIRCLE}stroke = {{widht_mm = 3}}\n",
-        "line 8: widht_mm: there is no such key; did you mean width_mm?",
-    ),
-    "a key of another kind": (
-        f"{CANVAS}{CIRCLE}{STROKE}start_mm = [1, 2]\n",
-        "line 9: start_mm: there is no such key",
-    ),
     "a key of another kind, within parts that several kinds have": (
         f"{CANVAS}{CIRCLE}"
         'fill.texture = {kind = "group", parts = [{kind = "linear-grating", angle_deg = 9}]}\n',
@@ -111,21 +103,9 @@ REFUSED = {
         f"{CANVAS}{CIRCLE}stroke.width_mm = nan\n",
         "line 8: width_mm: is nan; it must be a number",
     ),
-    "infinity": (
-        element("circle", "center_mm = [1, -inf]", "radius_mm = 3", "stroke = {}"),
-        "line 6: center_mm 2: is -inf; it must be a number",
-    ),
-    "nan among many": (
-        element("polygon", "vertices_mm = [", "[0, 0],", "[9, nan],", "[9, 9]]", "stroke = {}"),
-        "line 6: vertices_mm 2: is nan; it must be a number",
-    ),
     "a ridge of 0": (
         element("linear-grating", "ridge_mm = 0"),
         "line 6: ridge is 0 mm; it must be 0.05 to 10000 mm",
-    ),
-    "a ridge of 0 in a fill": (
-        f'{CANVAS}{CIRCLE}[elements.fill.texture]\nkind = "linear-grating"\nridge_mm = 0\n',
-        "line 10: ridge is 0 mm; it must be 0.05 to 10000 mm",
     ),
     "a polygon of two vertices": (
         element("polygon", "vertices_mm = [[0, 0], [9, 9]]", "stroke = {}"),
@@ -147,29 +127,13 @@ REFUSED = {
         element("vibration", "frequency_hz = 60"),
         "line 6: frequency is 60 Hz; it must be 0.1 to 50 Hz",
     ),
-    "a frequency below all": (
-        element("vibration", "vibration = {frequency_hz = 0}"),
-        "line 6: frequency is 0 Hz; it must be 0.1 to 50 Hz",
-    ),
     "a place of three numbers": (
         element("circle", "center_mm = [1, 2, 3]", "radius_mm = 3", "stroke = {}"),
         "line 6: center_mm: must be a list in brackets of length 2, not 3",
     ),
-    "a number in quotation marks": (
-        element("circle", "center_mm = [1, 2]", 'radius_mm = "3"', "stroke = {}"),
-        "line 7: radius_mm: must be a number, not a text in quotation marks",
-    ),
-    "a decimal comma": (
-        element("circle", "center_mm = [1, 2]", "radius_mm = 3,5", "stroke = {}"),
-        "a.scene is not TOML: Expected newline or end of document after a statement (at line 7",
-    ),
     "a table in place of a list": (
         f'{CANVAS}[elements]\nkind = "circle"\n',
         "line 4: elements: must be a list in brackets, not a table",
-    ),
-    "a texture out of range": (
-        f'{CANVAS}[textures."my own"]\nkind = "linear-grating"\nridge_mm = -1\n',
-        "line 6: ridge is -1 mm; it must be 0.05 to 10000 mm",
     ),
     "a texture that is none": (
         f"{CANVAS}[textures]\na = 3\n",
@@ -205,10 +169,6 @@ REFUSED = {
         CANVAS + "elements = [" + "{kind=1,parts=[" * 3000,
         "a.scene is not TOML: maximum recursion depth exceeded",
     ),
-    "tables that nest too deep": (
-        element("tile", "width_mm = 5", "height_mm = 5") + f"[elements{'.part' * 3000}]\nx = 1\n",
-        "nests its tables too deep",
-    ),
     "a blend of one": (
         element(
             "group",
@@ -221,10 +181,6 @@ REFUSED = {
     "not UTF-8": (b'title = "\n\xe9"\n', "a.scene is not UTF-8 in line 2; save it as UTF-8"),
     "a huge file": (
         b"#" * (MOST_BYTES + 1),
-        "a.scene is too large for a scene; at most 8 MB",
-    ),
-    "a million elements": (
-        CANVAS + "elements = [" + '{kind="uniform"},' * 1_000_000 + "]\n",
         "a.scene is too large for a scene; at most 8 MB",
     ),
 }

@@ -16,9 +16,7 @@ from vbraille.scene.patterns import (
     Fill,
     Group,
     Image,
-    Label,
     PathShape,
-    Polygon,
     StraightLine,
     Tile,
     Use,
@@ -26,7 +24,7 @@ from vbraille.scene.patterns import (
 from vbraille.scene.resolving import MOST_DEPTH, resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke, Vibration
-from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, Uniform
+from vbraille.scene.textures import LinearGrating, Uniform
 from vbraille.scene.traversal import ONE, SEVERAL, moved, with_children
 
 CANVAS = Canvas(width_mm=200, height_mm=100)
@@ -98,18 +96,9 @@ def test_an_element_deep_in_a_group_can_be_used_by_its_id():
 
 
 MOVED = [
-    (LinearGrating(ridge_mm=2.0), {"start_mm": (3.0, -4.0)}),
-    (RadialGrating(center_mm=(1.0, 1.0), ridge_mm=2.0), {"center_mm": (4.0, -3.0)}),
-    (AxialGrating(center_mm=(1.0, 1.0), ridge_deg=20.0), {"center_mm": (4.0, -3.0)}),
-    (Image(file="x.png"), {"place_mm": (3.0, -4.0)}),
-    (Label(text="a", place_mm=(1.0, 1.0)), {"place_mm": (4.0, -3.0)}),
     (
         StraightLine(start_mm=(0.0, 0.0), end_mm=(9.0, 9.0), stroke=Stroke()),
         {"start_mm": (3.0, -4.0), "end_mm": (12.0, 5.0)},
-    ),
-    (
-        Polygon(vertices_mm=((0.0, 0.0), (9.0, 0.0), (9.0, 9.0)), stroke=Stroke()),
-        {"vertices_mm": ((3.0, -4.0), (12.0, -4.0), (12.0, 5.0))},
     ),
     (
         PathShape(contours_mm=(((0.0, 0.0), (9.0, 9.0)),), stroke=Stroke()),

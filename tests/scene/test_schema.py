@@ -1,6 +1,5 @@
 """The published schema is the one that the values make, and scenes are right by it."""
 
-import json
 import tomllib
 from pathlib import Path
 
@@ -19,10 +18,7 @@ FORM = (
     "a misspelt kind",
     "no kind",
     "a misspelt key",
-    "a misspelt key within",
-    "a key of another kind",
     "a place of three numbers",
-    "a number in quotation marks",
     "a table in place of a list",
     "a texture that is none",
 )
@@ -43,10 +39,9 @@ def test_every_key_of_every_table_has_a_sentence():
         assert summary(table).endswith(".")
 
 
-def test_no_table_may_have_other_keys_and_none_can_be_null():
-    schema = scene_schema()
-    assert all(table["additionalProperties"] is False for table in schema["$defs"].values())
-    assert '"null"' not in json.dumps(schema)
+def test_no_table_may_have_other_keys():
+    tables = scene_schema()["$defs"].values()
+    assert all(table["additionalProperties"] is False for table in tables)
 
 
 @pytest.fixture(scope="module")

@@ -12,27 +12,22 @@ import sys
 import threading
 import time
 from contextlib import suppress
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import Any, Final, NamedTuple, Self
 
 from vbraille.errors import InputError
 from vbraille.wording import setting
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
 _SPEC: Final = re.compile(r"brlapi(?::(|[^\s:]*:[0-9]{1,5}|/\S+))?")
 _PACKAGES: Final = "/usr/lib/python3/dist-packages"
 _RETRY_S: Final = 0.5
-_LOOK_S: Final = 0.02  # between looks for keys
+_LOOK_S: Final = 0.02  # between looks at what is to be shown
 _CHECK_S: Final = 0.5  # writing to a display that was unplugged succeeds: it is asked for
 _END_S: Final = 2.0
 _SILENT_S: Final = 3.0  # after which what drives the display has stopped answering
 _STILL: Final = "what drives the display does not answer; start it again, or give its address"
 
 
-@dataclass(frozen=True, slots=True)
-class DisplayStands:
+class DisplayStands(NamedTuple):
     """The display is there: name of its driver, its model, and its cells in a row, and rows."""
 
     driver: str
@@ -46,30 +41,20 @@ class DisplayStands:
         return f"{self.driver} {self.model}".strip()
 
 
-@dataclass(frozen=True, slots=True)
-class DisplayAway:
+class DisplayAway(NamedTuple):
     """The display is not there, or takes no cells: why, and what helps, in words for people."""
 
     why: str
 
 
-@dataclass(frozen=True, slots=True)
-class CellsTaken:
+class CellsTaken(NamedTuple):
     """Cells stand on the display: number of what was shown, and when, by the monotonic clock."""
 
     number: int
     at_ns: int
 
 
-@dataclass(frozen=True, slots=True)
-class KeyPressed:
-    """A key of the display was pressed: BRLTTY's name of its command, and its number."""
-
-    name: str
-    argument: int = 0
-
-
-FromDisplay = DisplayStands | DisplayAway | CellsTaken | KeyPressed
+FromDisplay = DisplayStands | DisplayAway | CellsTaken
 
 
 def load_brlapi() -> Any:
@@ -155,7 +140,7 @@ class ConventionalDisplay:
         self._wakes.set()
 
     def poll(self) -> list[FromDisplay]:
-        """Take what has happened since the last call: keys, cells taken, that it came or went.
+        """Take what has happened since the last call: cells taken, that it came or went.
 
         That the display is there, or is not, is given when it changes.
         """
@@ -163,16 +148,15 @@ class ConventionalDisplay:
         if self.standing and time.monotonic() - self._beat_s > _SILENT_S:
             self._is_lost = True  # the thread tells it again once it comes back
             self._told.put(DisplayAway(_STILL))
-        with suppress(queue.Empty):
-            while True:
-                message = self._told.get_nowait()
-                if isinstance(message, DisplayStands):
-                    self.standing, self.away = message, ""
-                elif isinstance(message, DisplayAway):
-                    if message.why == self.away:
-                        continue
-                    self.standing, self.away = None, message.why
-                changes.append(message)
+        while not self._told.empty():
+            message = self._told.get()
+            if isinstance(message, DisplayStands):
+                self.standing, self.away = message, ""
+            elif isinstance(message, DisplayAway):
+                if message.why == self.away:
+                    continue
+                self.standing, self.away = None, message.why
+            changes.append(message)
         return changes
 
     def close(self) -> None:
@@ -216,8 +200,9 @@ class ConventionalDisplay:
             # Without a display BRLTTY says that it has one of one cell, or of none.
             if driver == "NoBraille" or columns * rows <= 1:
                 return "BRLTTY drives no display; plug one in"
+            gone = f"the {driver} display is not there; plug it in, or switch it on"
             if not self._online(connection):
-                return f"the {driver} display is not there; plug it in, or switch it on"
+                return gone
             self._beat_s, self._is_lost = time.monotonic(), True
             due_s = time.monotonic() + _CHECK_S
             while not self._ended:
@@ -236,13 +221,12 @@ class ConventionalDisplay:
                     connection.writeDots(cells[: columns * rows].ljust(columns * rows, b"\0"))
                     self._told.put(CellsTaken(number, time.monotonic_ns()))
                     shown = number
-                if shown is not None:
-                    for key in self._keys(connection):
-                        self._told.put(key)
+                while shown is not None and connection.readKey(0):
+                    pass  # its keys are nothing to a line of cells
                 if time.monotonic() >= due_s:
                     due_s = time.monotonic() + _CHECK_S
                     if not self._online(connection) or connection.displaySize != (columns, rows):
-                        return f"the {driver} display is not there; plug it in, or switch it on"
+                        return gone
                 self._wakes.wait(_LOOK_S)
                 self._wakes.clear()
         finally:
@@ -261,13 +245,6 @@ class ConventionalDisplay:
             )
         except brlapi.OperationError:
             return True
-
-    def _keys(self, connection: Any) -> Iterator[KeyPressed]:
-        while code := connection.readKey(0):
-            expanded = self._brlapi.expandKeyCode(code)
-            if expanded["type"] == self._brlapi.KEY_TYPE_CMD:
-                name = _text(self._brlapi.describeKeyCode(code)["command"])
-                yield KeyPressed(name, expanded["argument"])
 
 
 def _enter(connection: Any) -> None:

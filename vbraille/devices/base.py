@@ -14,7 +14,7 @@ from vbraille.devices.events import Placing
 from vbraille.errors import DeviceError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from vbraille.display import Display, Pose
 
 __all__ = ["Device", "Particulars", "Placing"]
-_DOUBLE = np.dtype(np.float64)
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,24 +192,12 @@ class Device(ABC):
                 f"{self.display.name} has {self.display.rows} × {self.display.columns} actuators; "
                 f"the frame has shape {frame.shape}"
             )
-        if not self._allows(frame):
+        # A NaN fails these comparisons, too.
+        if not (frame.min() >= 0.0 and frame.max() <= 1.0):
             raise DeviceError("a deflection is not in [0, 1]; the frame was not sent")
         if self._correction is not None:
             frame = self._correction.of(frame, self.rested)
         return self._send(frame) is not False
-
-    @cached_property
-    def _allows(self) -> Callable[[NDArray[np.float64]], bool]:
-        """Tell whether all deflections of a frame are in [0, 1]."""
-        # numba is heavy, and those who only know of devices need none.
-        from vbraille.devices.levels import in_range
-
-        def allows(frame: NDArray[np.float64]) -> bool:
-            if frame.dtype is _DOUBLE and frame.flags.carray:  # for others nothing is compiled
-                return in_range(frame)
-            return bool(frame.min() >= 0.0 and frame.max() <= 1.0)
-
-        return allows
 
     @cached_property
     def _shape(self) -> tuple[int, int]:

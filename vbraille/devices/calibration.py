@@ -49,9 +49,7 @@ class Calibration(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
     device: str
-    gain: Annotated[
-        list[Annotated[list[Gain], msgspec.Meta(min_length=1)]], msgspec.Meta(min_length=1)
-    ]
+    gain: Annotated[list[_Row], msgspec.Meta(min_length=1)]
 
     def __post_init__(self) -> None:
         if len({len(row) for row in self.gain}) > 1:
@@ -155,15 +153,16 @@ class Correction:
 
     def __init__(self, shape: tuple[int, int], rate_hz: float) -> None:
         self.moving = False
-        self._scale, self._offset = np.ones(shape), np.zeros(shape)
-        self._to_scale, self._to_offset = np.ones(shape), np.zeros(shape)
+        # Scales, then offsets.
+        self._now = np.stack([np.ones(shape), np.zeros(shape)])
+        self._to = self._now.copy()
         self._step = 1 / max(_TURN_S * rate_hz, 1)
         self._rested: int | None = None
 
     def aim(self, gains: NDArray[np.float64] | None) -> None:
         """Go over to these gains, float64[rows, columns]; None for deflections as they are."""
-        self._to_scale[:] = 1.0 if gains is None else gains
-        self._to_offset[:] = self._to_scale < 0
+        self._to[0] = 1.0 if gains is None else gains
+        self._to[1] = self._to[0] < 0
         self.moving = True
 
     def of(self, frame: NDArray[np.float64], rested: int) -> NDArray[np.float64]:
@@ -177,17 +176,11 @@ class Correction:
             How often the device has gone to rest by itself so far.
         """
         if rested != self._rested:
-            self._rested = rested
-            self._scale[:] = np.maximum(self._to_scale, 0.0)
-            self._offset[:] = 0.0
-            self.moving = True
+            self._rested, self.moving = rested, True
+            self._now[0] = np.maximum(self._to[0], 0.0)
+            self._now[1] = 0.0
         if self.moving:
-            self._go()
-        return np.clip(self._scale * frame + self._offset, 0.0, 1.0)
-
-    def _go(self) -> None:
-        left = 0.0
-        for now, to in ((self._scale, self._to_scale), (self._offset, self._to_offset)):
-            now += np.clip(to - now, -self._step, self._step)
-            left = max(left, float(np.abs(to - now).max()))
-        self.moving = left > 0.0
+            self._now += np.clip(self._to - self._now, -self._step, self._step)
+            self.moving = bool((self._now != self._to).any())
+        scale, offset = self._now
+        return np.clip(scale * frame + offset, 0.0, 1.0)

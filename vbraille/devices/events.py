@@ -97,7 +97,6 @@ class Notice(Event, frozen=True):
 
     code: int
     text: str
-    says = "device: {text}"
 
     @property
     def key(self) -> Hashable:
@@ -162,15 +161,16 @@ class NotInTime(Event, frozen=True):
     """The system refuses what the engine needs to do ticks in time: "priority", "memory"."""
 
     refused: tuple[str, ...]
-    says = (
-        "timing: the system gives no real-time {what}, so that ticks may come late; to allow it, "
-        "put '@vbraille - rtprio 50' and '@vbraille - memlock unlimited' into "
-        "/etc/security/limits.d/95-vbraille-rtprio.conf, join the group vbraille, and log in again"
-    )
 
     def say(self) -> str:
         """Sentence for the event."""
-        return self.says.format(what=" and no locked ".join(self.refused))
+        what = " and no locked ".join(self.refused)
+        return (
+            f"timing: the system gives no real-time {what}, so that ticks may come late; to allow "
+            f"it, put '@vbraille - rtprio 50' and '@vbraille - memlock unlimited' into "
+            f"/etc/security/limits.d/95-vbraille-rtprio.conf, join the group vbraille, and log in "
+            f"again"
+        )
 
 
 class Exposed(Event, frozen=True):
@@ -230,17 +230,16 @@ class Turned(Event, frozen=True):
     every = True
     degrees: float
     most: float
-    says = (
-        "turned: the array is turned by {size:.0f} degrees, and braille is felt up to {most:.0f}; "
-        "turn it back to the {side}"
-    )
 
     def say(self) -> str:
         """Sentence for the event."""
         if not self.degrees:
             return "upright: braille is felt again"
         side = "left" if self.degrees < 0 else "right"  # against the clock is positive
-        return self.says.format(size=abs(self.degrees), most=self.most, side=side)
+        return (
+            f"turned: the array is turned by {abs(self.degrees):.0f} degrees, and braille is felt "
+            f"up to {self.most:.0f}; turn it back to the {side}"
+        )
 
 
 KINDS: Final = tuple(Event.__subclasses__())
@@ -286,13 +285,14 @@ def placing_sentence(placing: Placing, display: Display, *, press: str = "press 
     press
         How the reader says that the carriage is there.
     """
-    if placing is Placing.DONE:
-        return "place: known"
-    if placing is Placing.MARK:
-        return "place: move the carriage over its mark"
-    if not display.height_mm:
-        return f"place: move left to the stop, then {press}"
-    return f"place: move to {shown_place(display)}, with the array straight, then {press}"
+    left = "left to the stop"
+    if display.height_mm:
+        left = f"to {shown_place(display)}, with the array straight"
+    return {
+        Placing.DONE: "place: known",
+        Placing.MARK: "place: move the carriage over its mark",
+        Placing.STOP: f"place: move {left}, then {press}",
+    }[placing]
 
 
 class Throttle:
@@ -310,24 +310,21 @@ class Throttle:
     def add(self, event: Event) -> None:
         """Add an event that is to be told."""
         if event.every:
-            if len(self._due) < _MOST:
-                self._due.append(event)
+            self._due = [*self._due, event][:_MOST]
             return
-        key = event.key if event.key in self._held or len(self._held) < _MOST else type(event)
+        key = event.key if len(self._held) < _MOST else type(event)
         self._held.pop(key, None)  # the last one is told last: of "silent" and "back" it is true
         self._held[key] = event
 
     def take(self, now_ns: int) -> list[Event]:
         """Events that are to be told by now, in order; each is given once."""
         due, self._due = self._due, []
+        told_ns = self._told_ns
         for key, event in list(self._held.items()):
             every_ns = _KNOB_NS if isinstance(event, Knob) else _NS_PER_S
-            if now_ns - self._told_ns.get(key, -_NS_PER_S) >= every_ns:
-                del self._held[key]
-                self._told_ns[key] = now_ns
-                due.append(event)
-        if len(self._told_ns) > _MOST:
-            self._told_ns = {
-                key: at for key, at in self._told_ns.items() if now_ns - at < _NS_PER_S
-            }
+            if now_ns - told_ns.get(key, -_NS_PER_S) >= every_ns:
+                due.append(self._held.pop(key))
+                told_ns[key] = now_ns
+        while len(told_ns) > _MOST:
+            del told_ns[next(iter(told_ns))]
         return due

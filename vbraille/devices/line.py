@@ -76,9 +76,15 @@ def parse_address(text: str, **usual: float) -> Address:
     where, _, query = text.partition("?")
     if not where:
         raise InputError(f"serial: needs a port, as in serial:/dev/ttyACM0; {ports_said()}")
-    if "://" in where:
-        _check_socket(where)
-    options: dict[str, float] = {"baud": BAUD, **usual}
+    with suppress(ValueError):  # of a port that is no number
+        parts = urlsplit(where)
+        if not parts.scheme or (parts.scheme == "socket" and parts.hostname and parts.port):
+            return Address(where, *_options(query, {"baud": BAUD, **usual}))
+    raise InputError(f"{where} is no port; give a path, or socket://HOST:PORT")
+
+
+def _options(query: str, options: dict[str, float]) -> tuple[int, dict[str, float]]:
+    """Baud and the other options that an address has, the usual ones given."""
     for name, value in parse_qsl(query, keep_blank_values=True):
         if name not in options:
             raise InputError(f"unknown option {name!r} of a port; known: {', '.join(options)}")
@@ -89,17 +95,7 @@ def parse_address(text: str, **usual: float) -> Address:
             options[name] = -1
         if not low <= options[name] <= high:
             raise InputError(f"{name} is {value!r}; it must be a number from {low} to {high}")
-    return Address(where, int(options.pop("baud")), options)
-
-
-def _check_socket(where: str) -> None:
-    try:
-        parts = urlsplit(where)
-        whole = parts.scheme == "socket" and parts.hostname and parts.port
-    except ValueError:
-        whole = False
-    if not whole:
-        raise InputError(f"{where} is no port; give a path, or socket://HOST:PORT")
+    return int(options.pop("baud")), options
 
 
 def ports_said() -> str:
@@ -236,17 +232,19 @@ def usb_identity(path: str) -> tuple[object, ...] | None:
 
     Of a device with several ports it tells them apart.
     """
+    real = os.path.realpath(path)
+    return next((identity for port, identity in _plugged() if port == real), None)
+
+
+def _plugged() -> list[tuple[str, tuple[object, ...]]]:
+    """Ports of this computer, each with what tells it from others, if anything does."""
     from serial.tools import list_ports
 
-    real = os.path.realpath(path)
-    for port in list_ports.comports():
-        if port.device == real and port.serial_number:
-            return _identity(port)
-    return None
-
-
-def _identity(port) -> tuple[object, ...]:
-    return port.vid, port.pid, port.serial_number, (port.location or "").partition(":")[2]
+    return [
+        (each.device, (each.vid, each.pid, number, (each.location or "").partition(":")[2]))
+        for each in list_ports.comports()
+        if (number := each.serial_number)
+    ]
 
 
 def find_again(address: Address, identity: tuple[object, ...] | None) -> Address:
@@ -259,11 +257,9 @@ def find_again(address: Address, identity: tuple[object, ...] | None) -> Address
     """
     if identity is None:
         return address
-    from serial.tools import list_ports
-
-    for port in list_ports.comports():
-        if port.serial_number and _identity(port) == identity:
-            return replace(address, where=port.device)
+    for port, found in _plugged():
+        if found == identity:
+            return replace(address, where=port)
     raise OSError(errno.ENODEV, "not plugged in")
 
 

@@ -12,7 +12,7 @@ import random
 import struct
 import zlib
 from enum import Enum
-from typing import TYPE_CHECKING, Annotated, Final, Literal, NamedTuple
+from typing import Annotated, Final, Literal, NamedTuple
 
 import msgspec
 from cobs import cobs
@@ -31,9 +31,6 @@ from vbraille.devices.events import (
 from vbraille.display import Display, Pose
 from vbraille.errors import DeviceError
 from vbraille.wording import printable
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 VERSION: Final = 3
 HELLO, FRAME, ZERO, INFO, STATE, SAY = 0x01, 0x02, 0x03, 0x81, 0x82, 0x83
@@ -141,9 +138,7 @@ def read_info(text: bytes) -> Info:
     try:
         info = msgspec.json.decode(text, type=Info)
         info.display  # noqa: B018 - it refuses what no display can be
-    except msgspec.MsgspecError as error:
-        raise ValueError(f"its INFO cannot be true: {error}") from None
-    except ValueError as error:
+    except ValueError as error:  # msgspec's errors are such
         raise ValueError(f"its INFO cannot be true: {error}") from None
     name, serial = printable(info.name), printable(info.serial)
     return msgspec.structs.replace(info, name=name, serial=serial)
@@ -183,21 +178,15 @@ class Lines:
 
     def __init__(self) -> None:
         self.damaged = 0
-        self._held = b""
+        self.clear()
 
-    def bodies(self, chunk: bytes) -> Iterable[bytes]:
+    def bodies(self, chunk: bytes) -> list[bytes]:
         """Bodies of the messages that have come whole."""
         *lines, held = (self._held + chunk).split(b"\0")
         self._held = held[-_MOST_LINE:]
-        found = []
-        for line in lines:
-            if not line:
-                continue
-            body = body_of(line)
-            if body is None:
-                self.damaged += 1
-            else:
-                found.append(body)
+        bodies = [body_of(line) for line in lines if line]
+        found = [body for body in bodies if body is not None]
+        self.damaged += len(bodies) - len(found)
         return found
 
     def clear(self) -> None:
@@ -237,11 +226,6 @@ class State(NamedTuple):
         """Lines that the device dropped, modulo 256."""
         return self.others[6]
 
-    @property
-    def analog(self) -> tuple[int, ...]:
-        """Values of the analog inputs."""
-        return struct.unpack(f"<{len(self.others) // 2 - 3}h", self.others[7:])
-
 
 def read_state(body: bytes) -> State | None:
     """Read the body of a STATE; None if its length is none of a STATE's."""
@@ -254,6 +238,11 @@ def read_state(body: bytes) -> State | None:
 def state_body(state: State) -> bytes:
     """Body of a STATE."""
     return _STATE.pack(STATE, *state[:-1]) + state.others
+
+
+def _frame(number: int, levels: bytes = b"") -> bytes:
+    """Line of a FRAME; without levels it is REST."""
+    return line_of(_NUMBERED.pack(FRAME, number & 0xFFFF) + levels)
 
 
 def ahead(number: int, base: int) -> int:
@@ -375,7 +364,7 @@ class Conversation:
             self._out += line_of(bytes((HELLO, VERSION)))
         if self.stage is Stage.RESTING and now_ns >= self._due_ns:
             self._due_ns = now_ns + REST_NS
-            self._out += line_of(_NUMBERED.pack(FRAME, self._number))
+            self._out += _frame(self._number)
         if self._zero_ns and now_ns >= self._zero_due_ns:
             self._zero_due_ns = now_ns + REST_NS
             self._out += line_of(bytes((ZERO,)))
@@ -391,7 +380,7 @@ class Conversation:
         if now_ns - (self.sent_ns or now_ns) > STALL_NS:
             self.rest(now_ns)
             return b""
-        return line_of(_NUMBERED.pack(FRAME, (self._number + 1) & 0xFFFF) + levels)
+        return _frame(self._number + 1, levels)
 
     def sent(self, now_ns: int) -> None:
         """Note that the line that `frame` made has gone out."""
@@ -423,10 +412,7 @@ class Conversation:
 
     def goodbye(self) -> bytes:
         """Give what is to be sent last."""
-        if self.stage is Stage.GREETING:
-            return b""
-        self._number = (self._number + 1) & 0xFFFF
-        return line_of(_NUMBERED.pack(FRAME, self._number))
+        return b"" if self.stage is Stage.GREETING else _frame(self._number + 1)
 
     def _hear_piece(self, body: bytes, now_ns: int) -> None:
         _, version, number, count = body[:4]
@@ -445,24 +431,22 @@ class Conversation:
             return
         text = b"".join(self._pieces[number] for number in range(count))
         self._pieces = {}
+        was = self.info
         try:
             info = read_info(text)
         except ValueError as error:
             self._refuse(str(error))
             return
-        if self.info is not None and info != self.info:
-            self._refuse(_difference(self.info, info))
+        if was is not None and info != was:
+            other = info.name if info.name != was.name else f"another {was.name}"
+            self._refuse(f"{other} came back in the place of {was.name}; plug in the one before")
             return
-        self._greeted(info, now_ns)
-
-    def _greeted(self, info: Info, now_ns: int) -> None:
-        if self.info is not None:
+        if was is not None:
             self.events.append(Back())
         elif info.fast / info.top < _USUAL_SHARE:
             speed_mm_s = _USUAL_MM_S * info.fast / info.top / _USUAL_SHARE
             self.events.append(SlowActuators(math.floor(speed_mm_s)))
         self.info, self.state, self._stranger = info, None, None
-        self._half_mm = (info.columns - 1) * info.pitch_mm[0] / 2
         self._heard_ns, self._silent = now_ns, False
         self.rest(now_ns)
 
@@ -506,8 +490,8 @@ class Conversation:
             self._took_us = self._time_us
         if last is None or state.others != last.others:
             self._note_changes(state, last or state, now_ns)
-        if self._zero_ns:
-            self._mind_zero(state)
+        if state.flags & PLACED and abs(state.x / self.info.counts_per_mm[0]) < _ZERO_MM:
+            self._zero_ns = 0  # ZERO was taken, and is repeated no more
         if state.flags & FAULT:
             raise DeviceError(f"{self.info.name} has a fault; switch it off and on, and try again")
         self._follow(state, now_ns)
@@ -530,19 +514,6 @@ class Conversation:
             self.trips += tripped
             self.tripped_ms = (self._time_us - self._took_us) / 1000
             self.events.append(WatchdogTripped(self.trips))
-
-    def _mind_zero(self, state: State) -> None:
-        """Repeat ZERO no more once the device has taken it."""
-        assert self.info is not None
-        if state.flags & PLACED and abs(state.x / self.info.counts_per_mm[0]) < _ZERO_MM:
-            self._zero_ns = 0
-
-    @property
-    def analog(self) -> dict[str, int]:
-        """Newest values of the analog inputs, by name."""
-        if self.info is None or self.state is None:
-            return {}
-        return dict(zip(self.info.analog, self.state.analog, strict=False))
 
     def _press(self, buttons: int, now_ns: int) -> None:
         """Tell of buttons that are pressed now and were not, or the other way round."""
@@ -583,7 +554,7 @@ class Conversation:
         info, state = self.info, self.state
         assert info is not None
         assert state is not None
-        x_mm = state.x / info.counts_per_mm[0] - self._half_mm
+        x_mm = state.x / info.counts_per_mm[0] - (info.columns - 1) * info.pitch_mm[0] / 2
         y_mm = state.y / info.counts_per_mm[1] if len(info.counts_per_mm) > 1 else 0.0
         theta_rad = 0.0
         if info.counts_per_turn:
@@ -595,11 +566,3 @@ class Conversation:
 def _turned(before: int, now: int) -> bool:
     """Tell whether a knob was turned, and does not just jitter; its ends are always told."""
     return now != before and (abs(now - before) >= 2 or now in (0, KNOB_TOP))
-
-
-def _difference(was: Info, now: Info) -> str:
-    """Sentence on a device that came back as another."""
-    if was.name != now.name:
-        return f"{now.name} came back in the place of {was.name}; plug in {was.name} again"
-    names = [n for n in Info.__struct_fields__ if getattr(was, n) != getattr(now, n)]
-    return f"another {was.name} came back, of other {', '.join(names)}; plug in the one before"

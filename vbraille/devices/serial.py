@@ -19,7 +19,7 @@ from vbraille.devices.protocol import VERSION, Conversation
 from vbraille.errors import DeviceError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
@@ -140,11 +140,6 @@ class SerialDevice(Device):
     def tripped_ms(self) -> float | None:  # type: ignore[override]
         """Time from the last frame to when the watchdog last tripped, by the device's clock."""
         return self._talk.tripped_ms
-
-    @property
-    def analog(self) -> Mapping[str, int]:
-        """The newest values of the analog inputs, by name."""
-        return self._talk.analog
 
     def read(self) -> Pose | None:
         """Newest pose since the last call, or None."""

@@ -17,7 +17,6 @@ from vbraille.engine.hostprocess import warm_up
 from vbraille.engine.record import FLOATS, INTS
 from vbraille.render import MODELS, work
 from vbraille.render.compiling import SceneMap, compile_scene
-from vbraille.render.program import scratch_for
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.textures import Uniform
 
@@ -53,7 +52,7 @@ def _compile_ticks() -> None:
         ticks.replay(
             line.numbers,
             line.table,
-            scratch_for(display.shape),
+            line.scratch,
             ints,
             floats,
             np.zeros(work.AT),

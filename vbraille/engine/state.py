@@ -25,7 +25,7 @@ from vbraille.engine.record import FLOATS, INTS
 from vbraille.errors import check_range
 from vbraille.render import work
 from vbraille.render.frames import blend
-from vbraille.render.program import nothing, scratch_for
+from vbraille.render.program import nothing
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -116,7 +116,6 @@ class LoopState:
         windows = np.zeros((DIFFERENCE, 3)), np.zeros((MEAN, 2))
         frames = self.output, self._held, self._target
         self._known = state, ints, floats, *windows, *frames, np.zeros(work.AT)
-        self._scratch = scratch_for(display.shape)
         self._program = nothing(display)
         # The frame before, the time at which it was sent, and how far its fade had come.
         self._before, self._before_ns = self.output.copy(), (now_ns, 0)
@@ -191,7 +190,7 @@ class LoopState:
         """Do ticks and return how many were done; see `vbraille.engine.ticks.advance`."""
         np.copyto(self._before, self.output)
         self._before_ns = self.now["sent_ns"], self.now["faded_ns"]
-        program = self._program.numbers, self._program.table, self._scratch
+        program = self._program.numbers, self._program.table, self._program.scratch
         return ticks.advance(
             *self._known, *program, times_ns, poses, rested, taking, *columns, first
         )

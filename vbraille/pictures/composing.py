@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
-from vbraille.render import instructions, work
+from vbraille.render import work
 from vbraille.render.compiling import compile_scene, highest_hz
 from vbraille.render.program import Program
 from vbraille.scene.patterns import Group
@@ -87,5 +87,5 @@ def viewed(
     """
     numbers = program.numbers.copy()
     numbers[work.OWN_Y] = own_y_mm
-    numbers[instructions.ORIGIN_X], numbers[instructions.ORIGIN_Y] = origin_mm
+    numbers[work.ORIGIN_X], numbers[work.ORIGIN_Y] = origin_mm
     return Program(numbers, program.table)

@@ -137,6 +137,7 @@ class OpenDevice(ReadingDevice):
             attended=False,
             by_hand=advance,
         )
+        self._reader.begin()
 
     def read(self, text: str, **how: Any) -> Iterator[Line]:
         """Show a text, and give each line as it comes under the hand, until all are read.

@@ -11,6 +11,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+# Keys that do the same as others.
+_ALSO = {
+    "ctrl-c": "escape", "ctrl-d": "escape", "ctrl-g": "escape", "ctrl-b": "left",
+    "ctrl-f": "right", "ctrl-a": "home", "ctrl-e": "end", "ctrl-p": "up", "ctrl-n": "down",
+}  # fmt: skip
+
 
 class Prompt:
     """A question to be answered by a line.
@@ -42,57 +48,40 @@ class Prompt:
         KeyError
             If the prompt is left without an answer.
         """
-        before, after = self.text[: self.cursor], self.text[self.cursor :]
-        match key:
-            case "enter":
-                self._answer(self.text)
-                return None
-            case "escape" | "ctrl-c" | "ctrl-d" | "ctrl-g":
-                raise KeyError(self.question)
-            case "backspace":
-                return self._erase(before[:-1], before[-1:], after)
-            case "delete":
-                return self._erase(before, after[:1], after[1:])
-            case "ctrl-w":
-                kept = before.rstrip().rpartition(" ")
-                kept = "".join(kept[:2])
-                return self._erase(kept, before[len(kept) :], after)
-            case "ctrl-u":
-                return self._erase("", before, after)
-            case "ctrl-k":
-                return self._erase(before, after, "")
-            case "left" | "ctrl-b":
-                return self._go(self.cursor - 1)
-            case "right" | "ctrl-f":
-                return self._go(self.cursor + 1)
-            case "home" | "ctrl-a":
-                return self._go(0)
-            case "end" | "ctrl-e":
-                return self._go(len(self.text))
-            case "up" | "ctrl-p":
-                return self._choose(-1)
-            case "down" | "ctrl-n":
-                return self._choose(1)
-            case "tab":
-                return self.text or "empty"
+        key = _ALSO.get(key, key)
+        text, at = self.text, self.cursor
+        before, after = text[:at], text[at:]
+        word = before.rstrip().rpartition(" ")
+        kept = {
+            "backspace": (before[:-1], after),
+            "delete": (before, after[1:]),
+            "ctrl-w": ("".join(word[:2]), after),
+            "ctrl-u": ("", after),
+            "ctrl-k": (before, ""),
+        }
+        places = {"left": at - 1, "right": at + 1, "home": 0, "end": len(text)}
+        if key == "enter":
+            self._answer(text)
+            return None
+        if key == "escape":
+            raise KeyError(self.question)
+        if key in kept:
+            self._set(*kept[key])
+            erased = text[self.cursor : self.cursor + len(text) - len(self.text)]
+            return f"deleted: {erased}" if erased else "nothing to delete"
+        if key in places:
+            self.cursor = min(max(places[key], 0), len(text))
+            return text[self.cursor : self.cursor + 1].replace(" ", "space") or "end"
+        if key in ("up", "down"):
+            step = 1 if key == "down" else -1
+            self._choice = min(max(self._choice + step, 0), len(self._earlier) - 1)
+            self._set(self._earlier[self._choice], "")
+        if key in ("up", "down", "tab"):
+            return self.text or "empty"
         typed = key.removeprefix("paste:")
-        if len(typed) > 1 and typed == key:
-            return ""  # a key that does nothing here
-        self._set(before + typed, after)
+        if len(typed) == 1 or typed != key:  # others do nothing here
+            self._set(before + typed, after)
         return ""
 
     def _set(self, before: str, after: str) -> None:
         self.text, self.cursor = before + after, len(before)
-
-    def _erase(self, before: str, erased: str, after: str) -> str:
-        self._set(before, after)
-        return f"deleted: {erased}" if erased else "nothing to delete"
-
-    def _go(self, cursor: int) -> str:
-        self.cursor = min(max(cursor, 0), len(self.text))
-        return self.text[self.cursor : self.cursor + 1].replace(" ", "space") or "end"
-
-    def _choose(self, step: int) -> str:
-        self._choice = min(max(self._choice + step, 0), len(self._earlier) - 1)
-        self._set(self._earlier[self._choice], "")
-        return self.text or "empty"

@@ -140,7 +140,7 @@ class Screen(Surface):
         followed = self.track(ticks)
         if followed is not None and followed.done and self._port.connected:
             self.send("WINDN" if self.rows else "FWINRT")
-            self.begin(self.row)
+            self.begin_row(self.row)
             self.steer()
 
     def route(self, cell: int) -> None:

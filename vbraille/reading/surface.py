@@ -260,7 +260,7 @@ class Surface(Explored):
         """Show parts of lines, one below the other, of which one is read."""
         self.parts = parts
         self.number += 1
-        self.begin(row)
+        self.begin_row(row)
         self._render()
         self.steer()
 
@@ -302,7 +302,7 @@ class Surface(Explored):
 
     # What the hand does
 
-    def begin(self, row: int) -> None:
+    def begin_row(self, row: int) -> None:
         """Begin to follow a hand that has read nothing of what is shown."""
         self._near, self._near_ns, self._below_ns = row, 0, 0
         self._begun = False  # whether the finger was on the page since it came

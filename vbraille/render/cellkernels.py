@@ -1,176 +1,151 @@
-"""The compiled inner loops of braille in a picture, of which the tests have a twin in numpy.
+"""Braille: dots along a line that rows of actuators show, and dots under each actuator.
 
-Both take the places of many actuators at once, x and y of the canvas in mm, and fill a number for
-each. ``numbers`` is a whole program's; a label's run in it begins at ``first``, with the places
-below, and its words are in the program's ``table``.
+A slot is one column of dots of one cell: 2 (cell + 1) + (0 left, 1 right), with an empty cell
+before a line's first and one after its last. The table has a word for each slot of each line, with
+an empty line before the first and one after the last. Bit r of a word is set if actuator row r
+shows a dot there; where each actuator shows what lies freely under it, bit r is row r of the dots.
 """
 
 import math
 
 import numpy as np
 
-from vbraille.render.waves import HALF_SINE, compiled, dot_swing
-
-# Places of a label's numbers in their run.
-(
-    X0,  # corner of the first cell, mm
-    Y0,
-    COSINE,  # of the direction of its lines
-    SINE,
-    WIDTH,  # of the rectangle of its cells, mm
-    HEIGHT,
-    LINES,
-    LINE_PITCH,
-    LINES_PER_MM,
-    ROW_PITCH,
-    ROWS_PER_MM,
+from vbraille.render.waves import compiled, cos_pi, inlined
+from vbraille.render.work import (
     CELL_PITCH,
-    CELLS_PER_MM,
+    CONTRAST,
+    COSINE,
+    DOT_ROW_PITCH,
     DOT_SPACING,
     DOT_WIDTH,
-    DOTS_PER_MM,
-    CONTRAST,
+    FADE_MM,
+    HEIGHT,
+    LAST_ROW,
+    LEFT,
+    LINE_PITCH,
+    LINES,
     PROFILE,
-    SHAPE,  # the 6 coefficients of the profile
-    _S1,
-    _S2,
-    _S3,
-    _S4,
-    _S5,
-    STRIDE,  # words of a line in the table: its cells, an empty one before them and one after
-    TABLE,  # first of its words in the table
-    APART,  # 1 if no two dots can be over one place
-    COUNT,  # how many numbers there are
-) = range(28)
+    SHAPE,
+    SINE,
+    SLOT,
+    SLOTS,
+    SWING,
+    TABLE,
+    TOP,
+    WIDTH,
+    X_ROW,
+)
 
-FADE_MM = 1.0  # over which the opacity of a label ends
+HALF_SINE = 0.0  # of `Profile`
+# Columns of dots that a place may be over: the right one of the cell before, the left and the right
+# one of its own, or the only one that there can be.
+BEFORE, OWN_LEFT, _OWN_RIGHT, ONLY = range(-1, 3)
 
-_LAST_ROW = 3
+
+@inlined
+def _shape(cells):
+    """Profile of the dots, and its coefficients."""
+    return (
+        cells[PROFILE] == HALF_SINE,
+        cells[SHAPE],
+        cells[SHAPE + 1],
+        cells[SHAPE + 2],
+        cells[SHAPE + 3],
+        cells[SHAPE + 4],
+        cells[SHAPE + 5],
+    )
 
 
-@compiled
-def label(numbers, first, table, x, y, count, out):
-    """Fill ``out[:count]`` with what a label has at places ``x[:count]``, ``y[:count]``."""
-    if numbers[first + APART] != 0.0:
-        _apart(numbers, first, table, x, y, count, out)
+@inlined
+def _dot_swing(shape, d):
+    """Compute the swing of a dot at d = (place - its middle) / its width, from -1/2 to 1/2."""
+    half_sine, e0, e1, e2, e3, e4, e5 = shape
+    q = d * d
+    sine = cos_pi(q)  # sin(πu/W), u from the dot's left edge
+    y = sine * sine
+    if half_sine:
+        # Lévesque 2009, 3.2, with sin 8θ = 8 sin θ cos θ (1 - 10y + 24y² - 16y³)
+        aside = abs(d) - 0.5
+        cosine = cos_pi(aside * aside)
+        cosine = -cosine if d > 0.0 else cosine
+        value = sine * (e0 + e1 * cosine * (1.0 + y * (-10.0 + y * (24.0 - 16.0 * y))))
     else:
-        _close(numbers, first, table, x, y, count, out)
+        # eqs. 4.1-4.3 on [0, 1]: c = cos πp, and cos kπp = T_k(c), which is odd
+        c = 2.0 * y - 1.0
+        z = c * c
+        value = 0.5 + c * (e0 + z * (e1 + z * (e2 + z * (e3 + z * (e4 + z * e5)))))
+    value = value if value > 0.0 else 0.0
+    value = value if value < 1.0 else 1.0
+    return value if q < 0.25 else 0.0
 
 
 @compiled
-def _apart(numbers, first, table, x, y, count, out):
-    """Fill ``out`` where each place has one dot at most: found by divisions alone."""
-    x0, y0 = numbers[first + X0], numbers[first + Y0]
-    cosine, sine = numbers[first + COSINE], numbers[first + SINE]
-    width, height = numbers[first + WIDTH], numbers[first + HEIGHT]
-    line_pitch, lines_per_mm = numbers[first + LINE_PITCH], numbers[first + LINES_PER_MM]
-    row_pitch, rows_per_mm = numbers[first + ROW_PITCH], numbers[first + ROWS_PER_MM]
-    cell_pitch, cells_per_mm = numbers[first + CELL_PITCH], numbers[first + CELLS_PER_MM]
-    spacing, radius = numbers[first + DOT_SPACING], 0.5 * numbers[first + DOT_WIDTH]
-    per_mm2 = numbers[first + DOTS_PER_MM] * numbers[first + DOTS_PER_MM]
-    stride, start = int(numbers[first + STRIDE]), int(numbers[first + TABLE]) + 1
-    lines = int(numbers[first + LINES])
-    half_sine = numbers[first + PROFILE] == HALF_SINE
-    shape = first + SHAPE
-    e0, e1, e2 = numbers[shape], numbers[shape + 1], numbers[shape + 2]
-    e3, e4, e5 = numbers[shape + 3], numbers[shape + 4], numbers[shape + 5]
-    contrast = numbers[first + CONTRAST]
-    # How far each place is from the nearest dot, whether up or not: vector instructions.
+def find_dots(cells, rows, count, which):
+    """Find a dot along the line for each place in the row X: its swing there, and its slot.
+
+    ``which`` is `BEFORE`, `OWN_LEFT`, the right one's number, or `ONLY`. The loop is flat, so that
+    it becomes vector instructions.
+    """
+    last = 0.5 * cells[SLOTS] - 2.0
+    pitch, spacing = cells[CELL_PITCH], cells[DOT_SPACING]
+    cells_per_mm, dots_per_mm = 1.0 / pitch, 1.0 / cells[DOT_WIDTH]
+    shape = _shape(cells)
     for n in range(count):
-        right, down = x[n] - x0, y[n] - y0
-        u = right * cosine + down * sine
-        v = down * cosine - right * sine
-        v -= np.floor(v * lines_per_mm) * line_pitch
-        row = np.floor(v * rows_per_mm)
-        v -= (row if row < _LAST_ROW else _LAST_ROW) * row_pitch + radius
-        u -= np.floor(u * cells_per_mm) * cell_pitch + radius
-        u = u if u < spacing - radius else u - spacing
-        q = (u * u + v * v) * per_mm2
-        out[n] = q if q < 0.25 else 0.25
-    for n in range(count):
-        q = out[n]
-        out[n] = 0.0
-        if q >= 0.25:
-            continue
-        right, down = x[n] - x0, y[n] - y0
-        u = right * cosine + down * sine
-        v = down * cosine - right * sine
-        if not (u > 0.0 and u < width and v > 0.0 and v < height):
-            continue
-        line, cell = int(v * lines_per_mm), int(u * cells_per_mm)
-        line = line if line < lines else lines - 1
-        row = int((v - line * line_pitch) * rows_per_mm)
-        row = row if row < _LAST_ROW else _LAST_ROW
-        side = 4 if u - cell * cell_pitch >= spacing else 0
-        if table[start + line * stride + cell] >> (row + side) & 1:
-            out[n] = contrast * dot_swing(half_sine, e0, e1, e2, e3, e4, e5, math.sqrt(q), q)
+        u = rows[X_ROW, n]
+        # Written so that a NaN, too, goes to the empty cell before the line, and is on no dot.
+        cell = u * cells_per_mm
+        cell = cell if cell > -1.0 else -1.0
+        cell = np.floor(cell if cell < last else last)
+        t = u - cell * pitch
+        right = (1.0 if t >= spacing else 0.0) if which == ONLY else float(which)
+        d = (t - (spacing * right if right >= 0.0 else spacing - pitch)) * dots_per_mm - 0.5
+        d = d if d < 0.5 else 0.5
+        d = d if d > -0.5 else -0.5
+        rows[SWING, n] = _dot_swing(shape, d)
+        slot = 2.0 * (cell + 1.0) + right
+        rows[SLOT, n] = slot if slot > 0.0 else 0.0
 
 
 @compiled
-def _close(numbers, first, table, x, y, count, out):
-    """Fill ``out`` where dots overlap, of which the larger counts."""
-    x0, y0 = numbers[first + X0], numbers[first + Y0]
-    cosine, sine = numbers[first + COSINE], numbers[first + SINE]
-    width, height = numbers[first + WIDTH], numbers[first + HEIGHT]
-    lines, line_pitch = int(numbers[first + LINES]), numbers[first + LINE_PITCH]
-    row_pitch, cell_pitch = numbers[first + ROW_PITCH], numbers[first + CELL_PITCH]
-    dot, spacing = numbers[first + DOT_WIDTH], numbers[first + DOT_SPACING]
-    radius, dots_per_mm = 0.5 * dot, numbers[first + DOTS_PER_MM]
-    reach = _LAST_ROW * row_pitch + dot
-    stride, start = int(numbers[first + STRIDE]), int(numbers[first + TABLE])
-    half_sine = numbers[first + PROFILE] == HALF_SINE
-    shape = first + SHAPE
-    e0, e1, e2 = numbers[shape], numbers[shape + 1], numbers[shape + 2]
-    e3, e4, e5 = numbers[shape + 3], numbers[shape + 4], numbers[shape + 5]
-    for n in range(count):
-        right, down = x[n] - x0, y[n] - y0
-        u = right * cosine + down * sine
-        v = down * cosine - right * sine
-        out[n] = 0.0
-        if not (u > 0.0 and u < width and v > 0.0 and v < height):
-            continue
-        cell = int(u * numbers[first + CELLS_PER_MM])
-        cell = cell if cell < stride - 2 else stride - 2
-        left = u - cell * cell_pitch - radius  # from the middle of the cell's left dots
-        most = 0.0
-        # Lines that are close, or have a fourth row of dots, reach into one another.
-        uppermost = max(math.ceil((v - reach) * numbers[first + LINES_PER_MM]), 0)
-        lowest = min(int(v * numbers[first + LINES_PER_MM]), lines - 1)
-        for line in range(uppermost, lowest + 1):
-            at = v - line * line_pitch
-            upper = max(math.ceil((at - dot) * numbers[first + ROWS_PER_MM]), 0)
-            lower = min(int(at * numbers[first + ROWS_PER_MM]), _LAST_ROW)
-            base = start + line * stride + cell
-            for row in range(upper, lower + 1):
-                dy = at - row * row_pitch - radius
-                # The right dot of the cell before, and the dots of this one.
-                for which in range(3):
-                    word = table[base + (which + 1) // 2]
-                    if word >> (row + 4 * ((which + 1) & 1)) & 1 == 0:
-                        continue
-                    dx = left - (which - 1) * spacing if which else left - spacing + cell_pitch
-                    q = (dx * dx + dy * dy) * dots_per_mm * dots_per_mm
-                    if q < 0.25:
-                        value = dot_swing(half_sine, e0, e1, e2, e3, e4, e5, math.sqrt(q), q)
-                        most = max(most, value)
-        out[n] = numbers[first + CONTRAST] * most
+def highest_dot(cells, table, x, y):
+    """Compute what a place has of lines of cells whose dots are round; the highest dot counts."""
+    right, down = x - cells[LEFT], y - cells[TOP]
+    u = right * cells[COSINE] + down * cells[SINE]
+    v = down * cells[COSINE] - right * cells[SINE]
+    if not (0.0 < u < cells[WIDTH] and 0.0 < v < cells[HEIGHT]):
+        return 0.0
+    pitch, dot, row_pitch = cells[CELL_PITCH], cells[DOT_WIDTH], cells[DOT_ROW_PITCH]
+    line_pitch, slots = cells[LINE_PITCH], int(cells[SLOTS])
+    cell = int(min(u / pitch, 0.5 * slots - 2.0))
+    most = 0.0
+    # Lines that are close, or have a fourth row of dots, reach into one another.
+    uppermost = math.ceil(max((v - LAST_ROW * row_pitch - dot) / line_pitch, 0.0))
+    for line in range(uppermost, int(min(v / line_pitch, cells[LINES] - 1.0)) + 1):
+        below = v - line * line_pitch
+        base = int(cells[TABLE]) + (line + 1) * slots + 2 * cell + 2
+        upper = math.ceil(max((below - dot) / row_pitch, 0.0))
+        for row in range(upper, int(min(below / row_pitch, LAST_ROW)) + 1):
+            dy = (below - row * row_pitch) / dot - 0.5
+            for which in range(BEFORE, ONLY):
+                edge = (cell - (which < 0)) * pitch + abs(which) * cells[DOT_SPACING]
+                dx = (u - edge) / dot - 0.5
+                d = math.sqrt(dx * dx + dy * dy)
+                if d < 0.5 and table[base + which] >> row & 1:
+                    most = max(most, _dot_swing(_shape(cells), d))
+    return cells[CONTRAST] * most
 
 
 @compiled
-def label_opacity(numbers, first, x, y, count, out):
-    """Fill ``out[:count]`` with the opacity of a label: 1 on its cells, and a dot's radius around.
+def opacity(cells, x, y):
+    """Compute the opacity of lines of cells: 1 on the cells, and a dot's radius around.
 
     From there it ends over `FADE_MM`; the mask is ours, after Lévesque 2009, 8.4.5.
     """
-    x0, y0 = numbers[first + X0], numbers[first + Y0]
-    cosine, sine = numbers[first + COSINE], numbers[first + SINE]
-    width, height = numbers[first + WIDTH], numbers[first + HEIGHT]
-    radius = 0.5 * numbers[first + DOT_WIDTH]
-    for n in range(count):
-        right, down = x[n] - x0, y[n] - y0
-        u = right * cosine + down * sine
-        v = down * cosine - right * sine
-        beside = max(max(-u, u - width) - radius, 0.0)
-        below = max(max(-v, v - height) - radius, 0.0)
-        share = 1.0 - math.sqrt(beside * beside + below * below) / FADE_MM
-        out[n] = share if share > 0.0 and width > 0.0 else 0.0
+    right, down = x - cells[LEFT], y - cells[TOP]
+    u = right * cells[COSINE] + down * cells[SINE]
+    v = down * cells[COSINE] - right * cells[SINE]
+    radius = 0.5 * cells[DOT_WIDTH]
+    beside = max(max(-u, u - cells[WIDTH]) - radius, 0.0)
+    below = max(max(-v, v - cells[HEIGHT]) - radius, 0.0)
+    share = 1.0 - math.sqrt(beside * beside + below * below) / FADE_MM
+    return share if share > 0.0 and cells[WIDTH] > 0.0 else 0.0

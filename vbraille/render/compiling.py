@@ -6,24 +6,26 @@ it is skipped where nothing of it can be felt.
 
 from __future__ import annotations
 
+import itertools
 import math
-from typing import TYPE_CHECKING, Any
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, TypedDict, Unpack
 
 import msgspec
 import numpy as np
 
-from vbraille.render import instructions as i
+from vbraille.render import evaluating as i
 from vbraille.render import paths, work
 from vbraille.render import signalkernels as kernels
-from vbraille.render.cellkernels import TABLE
-from vbraille.render.labels import Assets, box_of, pack_label
+from vbraille.render.braille.mappings import DOT_BITS
+from vbraille.render.braille.style import pack_cells
+from vbraille.render.labels import Assets
 from vbraille.render.program import Program, head
 from vbraille.render.work import MOST_SIGNALS, ProgramKind
-from vbraille.scene.bitmap import WHOLE, bitmap_box, opaque
-from vbraille.scene.bounds import bounds, drawn_radius_mm, is_everywhere, reach_mm
-from vbraille.scene.dotting import PlacedDot
+from vbraille.scene.bitmap import WHOLE, opaque
+from vbraille.scene.bounds import Box, around, bounds, drawn_radius_mm, is_everywhere, reach_mm
+from vbraille.scene.dotting import PlacedDot, rows_of
 from vbraille.scene.joints import Cycle, axial_cycle, cue_cycle, stroke_cycles
-from vbraille.scene.measures import travel_deg
 from vbraille.scene.patterns import (
     Circle,
     Dots,
@@ -50,32 +52,28 @@ from vbraille.scene.textures import (
 from vbraille.scene.traversal import drawn_vibrations, driving, each
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
     from vbraille.display import Display
     from vbraille.scene.bitmap import Bitmap
-    from vbraille.scene.bounds import Box
     from vbraille.scene.measures import Point
-    from vbraille.scene.pattern import Pattern
-    from vbraille.scene.patterns import AnyPattern, Fill
-    from vbraille.scene.scene import Canvas, Scene
+    from vbraille.scene.patterns import AnyPattern
+    from vbraille.scene.scene import Scene
     from vbraille.scene.signals import OrderedSignal
     from vbraille.scene.strokes import Across, DotStyle, MovingCue, Stroke, Vibration
 
-_AnyGrating = LinearGrating | RadialGrating | AxialGrating
 _FAR = 1e30  # stands for infinity
-_SHARPEST = 1e9  # 1/mm, of a fill that does not fade in
-_JOINS = {"add": i.ADD, "weighted": i.ADD, "maximum": i.MAXIMUM, "overwrite": i.OVER_ITSELF}
-# Rows that an instruction leaves on the stack beside those that it takes.
-_PUSHES = (
-    dict.fromkeys((i.ADD, i.MAXIMUM, i.MULTIPLY, i.OVER_ITSELF, i.FILL), -1)
-    | dict.fromkeys((i.OVER, i.BLEND, i.FILL_BLENDED, i.RESTORE), -2)
-    | dict.fromkeys((i.LEVEL, i.SIGNAL, i.VIBRATION, i.LINEAR, i.RADIAL, i.AXIAL, i.IMAGE), 1)
-    | dict.fromkeys((i.PIXELS, i.LABEL, i.LABEL_MASK, i.DOTS, i.PROFILE, i.BANDS, i.BEYOND), 1)
-    | {i.CUE: 1, i.WRAP: 2, i.SHIFT: 2}
-)
+_LEAST_FADE_MM = 1e-9  # of a fill
+_CHUNK = 8  # segments or dots that share a box
+_JOINS = {
+    "add": i.ADD,
+    "weighted": i.ADD,
+    "maximum": i.MAXIMUM,
+    "multiply": i.MULTIPLY,
+    "overwrite": i.OVER_ITSELF,
+}
 
 
 def compile_scene(
@@ -104,13 +102,9 @@ def compile_scene(
     ]
     moves_hz += [1.0 / one.period_s for one in scene.signals.values() if isinstance(one, Pulse)]
     numbers = head(display, ProgramKind.SCENE, i.CODE)
-    numbers[i.COLUMN_MM] = display.column_pitch_mm
-    numbers[i.ROW_MM] = display.row_pitch_mm
     numbers[work.FREQUENCY] = max(moves_hz, default=0.0)
     numbers[work.AMPLITUDE] = numbers[work.FREQUENCY] > 0.0
-    writer = _Writer(scene, assets or Assets())
-    writer.scene()
-    return Program(*writer.finish(numbers))
+    return Program(*_written(scene, assets, numbers, is_mask=False))
 
 
 def settled(scene: Scene, velocity_mm_s: Point = (0.0, 0.0), switches: int = 0) -> Scene:
@@ -173,13 +167,13 @@ def _frequencies(pattern: AnyPattern) -> Iterator[float]:
         yield 1.0  # it moves at any length of its waves
 
 
-def signal_numbers(scene: Scene) -> NDArray[np.float64]:
-    """Numbers of a scene's signals, as the kernels take them; float64[CODE - SIGNALS].
+def _in_order(scene: Scene) -> list[OrderedSignal]:
+    """Signals of a scene in their order, with the integrals of those that are a motion's speed.
 
     Raises
     ------
     ValueError
-        If there are more than 8 with the integrals of those that are the speed of a motion.
+        If there are more than 8.
     """
     order = ordered(scene.signals, driving(*scene.elements)) if scene.signals else []
     if len(order) > MOST_SIGNALS:
@@ -187,13 +181,17 @@ def signal_numbers(scene: Scene) -> NDArray[np.float64]:
             f"there are {len(order)} signals, where each that is the speed of a motion counts "
             f"twice; there can be {MOST_SIGNALS}"
         )
-    numbers = np.zeros(i.CODE - i.SIGNALS)
-    numbers[0] = len(order)
-    rows = numbers[1:].reshape(MOST_SIGNALS, i.SIGNAL_NUMBERS)
+    return order
+
+
+def _write_signals(scene: Scene, numbers: NDArray[np.float64]) -> None:
+    """Fill in the numbers of a scene's signals."""
+    order = _in_order(scene)
+    numbers[work.SIGNALS] = len(order)
+    rows = numbers[work.SIGNAL_ROWS : work.CODE].reshape(MOST_SIGNALS, work.SIGNAL_NUMBERS)
     for row, one in zip(rows, order, strict=False):
         own = _signal(one)
         row[: len(own)] = own
-    return numbers
 
 
 def _signal(one: OrderedSignal) -> tuple[float, ...]:
@@ -207,18 +205,51 @@ def _signal(one: OrderedSignal) -> tuple[float, ...]:
             slow = way.below_mm_s, way.below_mm_s + way.slow_transition_mm_s
             last = way.tolerance_deg + way.transition_deg
             away = math.radians(way.tolerance_deg), math.radians(last)
-            at_rest = {"high": kernels.HIGH, "low": kernels.LOW, "keep": kernels.KEEP}[way.at_rest]
-            return (kernels.DIRECTION, angle, *slow, *away, float(way.axis), at_rest)
+            at_rest = kernels.AT_REST.index(way.at_rest)
+            return (kernels.DIRECTION, *slow, angle, *away, way.axis, at_rest)
         case Switch() as switch:
-            return (kernels.SWITCH, switch.fade_s, float(len(switch.levels)), *switch.levels)
+            return (kernels.SWITCH, switch.fade_s, len(switch.levels), *switch.levels)
         case Pulse() as clock:
-            shapes = {"sine": kernels.SINE, "square": kernels.SQUARE, "ramp": kernels.RAMP}
-            return (kernels.CLOCK, shapes[clock.shape], clock.period_s)
-        case Product():
-            return (kernels.PRODUCT, float(len(one.of)), *map(float, one.of))
-        case Inverse():
-            return (kernels.INVERSE, 1.0, float(one.of[0]))
-    return (kernels.INTEGRAL, 1.0, float(one.of[0]))
+            return (kernels.CLOCK, kernels.SHAPES.index(clock.shape), clock.period_s)
+        case Product() | Inverse():
+            factor = (1.0, 0.0) if isinstance(one.signal, Product) else (-1.0, 1.0)
+            return (kernels.PRODUCT, *factor, len(one.of), *one.of)
+    return (kernels.INTEGRAL, *one.of)
+
+
+def _written(
+    scene: Scene, assets: Assets | None, numbers: NDArray[np.float64], *, is_mask: bool
+) -> tuple[NDArray[np.float64], NDArray[np.uint16]]:
+    """Numbers and table of a scene's program, or of that for its opacity mask; the head is given.
+
+    A scene of one element has the mask of that.
+
+    Raises
+    ------
+    ValueError
+        If its elements cannot be put together by its operation, patterns stand too deep in each
+        other, or a number is not finite.
+    """
+    if scene.operation in ("weighted", "blend"):
+        raise ValueError(
+            f'operation = "{scene.operation}" is for groups; put the elements into one'
+        )
+    writer = _Writer(scene, assets or Assets())
+    if not scene.elements:
+        writer.say(i.LEVEL, 0.0)
+    elif is_mask and len(scene.elements) == 1:
+        writer.pattern(scene.elements[0], is_mask)
+    else:
+        writer.pattern(Group(operation=scene.operation, parts=scene.elements), is_mask)
+    writer.say(i.END)
+    code = np.array(writer.numbers)
+    if not np.isfinite(code).all():
+        raise ValueError("a number of a pattern is not finite")
+    numbers[work.RIGHT_MM] = scene.canvas.width_mm
+    numbers[work.BOTTOM_MM] = scene.canvas.height_mm
+    numbers[work.INSTRUCTIONS] = writer.count
+    _write_signals(scene, numbers)
+    return np.concatenate([numbers, code]), np.concatenate(writer.table)
 
 
 class _Writer:
@@ -230,201 +261,111 @@ class _Writer:
         A resolved scene.
     assets
         Bitmaps of its images and cells of its labels.
-
-    Raises
-    ------
-    ValueError
-        If its elements cannot be put together by its operation.
     """
 
     def __init__(self, scene: Scene, assets: Assets) -> None:
-        if scene.operation in ("weighted", "blend"):
-            raise ValueError(
-                f'operation = "{scene.operation}" is for groups; put the elements into one'
-            )
-        self._scene, self._assets = scene, assets
-        self._numbers: list[float] = []
-        self._table = [np.zeros(4, np.uint16)]
+        self.numbers: list[float] = []
+        self.table = [np.zeros(4, np.uint16)]
+        self.count = 0
         self._words = 4  # entries of the table
         self._depth = 0
-        order = ordered(scene.signals, driving(*scene.elements)) if scene.signals else []
+        self._assets = assets
+        self._boxes = assets.boxes()
+        self._measured: AnyPattern | None = None  # the shape whose coordinates are known
         self._signals = {
             one.name if one.signal is not None else f"∫{one.name}": number
-            for number, one in enumerate(order)
+            for number, one in enumerate(_in_order(scene))
         }
-        boxes: dict[Image | Label, Box | None] = {}
-        boxes |= {label: box_of(label, written) for label, written in assets.written.items()}
-        boxes |= {image: bitmap_box(bitmap) for image, bitmap in assets.bitmaps.items()}
-        self._boxes = {pattern: box for pattern, box in boxes.items() if box is not None}
-
-    def scene(self) -> None:
-        """Write the deflections of the scene."""
-        self._group(self._scene.operation, self._scene.elements)
-
-    def hiding(self) -> None:
-        """Write the opacity mask of the scene; that of its element if it has one only."""
-        elements = self._scene.elements
-        if not elements:
-            self._say(i.LEVEL, 0.0)
-        elif len(elements) == 1:
-            self._mask(elements[0])
-        else:
-            self._mask(Group(operation=self._scene.operation, parts=elements))
-
-    def finish(
-        self, numbers: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.uint16]]:
-        """Numbers and table of a program; the head is given.
-
-        Raises
-        ------
-        ValueError
-            If a number is not finite.
-        """
-        canvas: Canvas = self._scene.canvas
-        self._say(i.END)
-        numbers[i.RIGHT_MM], numbers[i.BOTTOM_MM] = canvas.width_mm, canvas.height_mm
-        numbers[i.SIGNALS : i.CODE] = signal_numbers(self._scene)
-        code = np.array(self._numbers)
-        if not np.isfinite(code).all():
-            raise ValueError("a number of a pattern is not finite")
-        return np.concatenate([numbers, code]), np.concatenate(self._table)
 
     # Single instructions
 
-    def _say(self, operation: int, *constants: float) -> None:
-        self._numbers += (operation, 2 + len(constants), *constants)
-        self._depth += _PUSHES.get(operation, 0)
-        if self._depth > i.DEPTH:
+    def say(self, operation: int, *constants: float) -> None:
+        """Write an instruction."""
+        added = i.ADDED.get(operation, 0)
+        self.numbers += (operation, i.HEAD + len(constants), added, *constants)
+        self.count += 1
+        self._depth += added
+        if self._depth > work.DEPTH:
             raise ValueError("patterns stand too deep in each other; take some groups apart")
 
-    def _say_table(self, operation: int, *constants: float, at: int, entries: NDArray) -> None:
-        """Write an instruction on entries of the table, whose place is the constant ``at``."""
-        said = list(constants)
-        said[at] = self._words
-        self._table.append(np.ascontiguousarray(entries.ravel(), np.uint16))
+    def _entries(self, entries: NDArray) -> float:
+        """Add entries to the table, and tell where they begin."""
+        begin = self._words
+        self.table.append(np.ascontiguousarray(entries.ravel(), np.uint16))
         self._words += entries.size
-        self._say(operation, *said)
+        return float(begin)
 
-    def _gated(self, box: Box | None, shut_by: int, pushes: int, say: Callable[[], None]) -> None:
-        """Write instructions that are skipped beyond a box, or where signals shut them.
+    @contextmanager
+    def _gate(self, box: Box | None, shut_by: int = 0) -> Iterator[None]:
+        """Have the instructions within be skipped beyond a box, or where signals shut them.
 
         A gate has a bit for each signal that shuts it where it is 0, and then one for each that
-        does where it is 1. So many zeros are pushed instead.
+        does where it is 1.
         """
         if box is None and not shut_by:
-            say()
+            yield
             return
         within = [min(max(side, -_FAR), _FAR) for side in box or (-_FAR, -_FAR, _FAR, _FAR)]
-        self._say(i.GATE, *within, shut_by, 0.0, pushes)
-        begin = len(self._numbers)
-        say()
-        self._numbers[begin - 2] = len(self._numbers) - begin
+        self.say(i.GATE, *within, shut_by, 0.0)
+        begin = len(self.numbers)
+        before = self._measured
+        yield
+        self.numbers[begin - 1] = len(self.numbers) - begin
+        if self._measured is not before:  # the coordinates may have been skipped
+            self._measured = None
 
-    def _number(self, name: str) -> float:
-        return float(self._signals[name])
+    def _shut_by(self, pattern: AnyPattern) -> int:
+        return 1 << self._signals[pattern.factor] if pattern.factor else 0
 
     def _clock(self, velocity_by: str) -> float:
         """Number of the signal whose integral is the time of a motion; below 0 for time itself."""
-        return self._number(f"∫{velocity_by}") if velocity_by else -1.0
+        return float(self._signals[f"∫{velocity_by}"]) if velocity_by else -1.0
 
-    def _shut_by(self, pattern: Pattern) -> int:
-        return 1 << self._signals[pattern.factor] if pattern.factor else 0
+    def _scale(self, factor: float) -> None:
+        if factor != 1.0:
+            self.say(i.LEVEL, factor)
+            self.say(i.MULTIPLY)
 
-    def _factor(self, pattern: Pattern) -> None:
+    # Patterns
+
+    def pattern(self, pattern: AnyPattern, is_mask: bool = False) -> None:
+        """Write a pattern with its changes, or its opacity mask: Lévesque 2009, 8.4.5."""
+        if is_mask and is_everywhere(pattern):
+            self.say(i.LEVEL, 1.0)
+        else:
+            self._plain(pattern, is_mask)
+        if not is_mask:
+            self._scale(pattern.amplitude)
+            if pattern.inverted:
+                self.say(i.INVERT)
+            self._vibrate(pattern.vibration)
         if pattern.factor:
-            self._say(i.BY_SIGNAL, self._number(pattern.factor))
+            self.say(i.SIGNAL_VALUE, self._signals[pattern.factor])
+            self.say(i.MULTIPLY)
 
-    # Groups
+    def _vibrate(self, vibration: Vibration | None) -> None:
+        """Have what is up vibrate, or what is down: 1 - (1 - δ) δ¹."""
+        if vibration is not None:
+            is_low = vibration.of == "low"
+            if is_low:
+                self.say(i.INVERT)
+            self.say(i.VIBRATE, vibration.frequency_hz, vibration.amplitude)
+            if is_low:
+                self.say(i.INVERT)
 
-    def _group(
-        self,
-        operation: str,
-        parts: Sequence[AnyPattern],
-        weights: Sequence[float] | None = None,
-        by: AnyPattern | None = None,
-    ) -> None:
-        """Write the deflection of parts that are put together."""
-        if by is not None:
-            self._blend(parts, by, self._deflection)
-        elif operation == "multiply":
-            self._say(i.LEVEL, 1.0)
-            for part in parts:
-                self._whole(part)
-                self._say(i.MULTIPLY)
-        elif operation == "overwrite":
-            covering = [n for n, part in enumerate(parts) if self._covers_alone(part)]
-            first = covering[-1] if covering else -1
-            if covering:  # it hides all that is beneath it
-                self._whole(parts[first])
-            else:
-                self._say(i.LEVEL, 0.0)
-            for part in parts[first + 1 :]:
+    def _whole(self, pattern: AnyPattern, is_mask: bool = False, shut_by: int = 0) -> None:
+        """Write a pattern, of which nothing is computed where it is 0 or signals shut it."""
+        box, own = bounds(pattern, self._boxes), self._shut_by(pattern)
+        if box is None and not own | shut_by:
+            self.pattern(pattern, is_mask)
+            return
+        self.say(i.LEVEL, 0.0)
+        with self._gate(box, own | shut_by):
+            self.pattern(pattern, is_mask)
+            self.say(i.ADD)
 
-                def lay(part: AnyPattern = part) -> None:
-                    self._layer(part)
-
-                self._gated(self._box(part), self._shut_by(part), 0, lay)
-        else:
-            self._say(i.LEVEL, 0.0)
-            for number, part in enumerate(parts):
-                weight = 1.0 if weights is None else weights[number]
-
-                def say(part: AnyPattern = part, weight: float = weight) -> None:
-                    self._deflection(part)
-                    if weight != 1.0:
-                        self._say(i.SCALE, weight)
-                    self._say(_JOINS[operation])
-
-                self._gated(self._box(part), self._shut_by(part), 0, say)
-
-    def _box(self, pattern: AnyPattern) -> Box | None:
-        return bounds(pattern, self._boxes)
-
-    def _whole(self, pattern: AnyPattern) -> None:
-        """Write a deflection, of which nothing is computed where it is 0."""
-        box, shut_by = self._box(pattern), self._shut_by(pattern)
-        self._gated(box, shut_by, 1, lambda: self._deflection(pattern))
-
-    def _blend(
-        self, parts: Sequence[AnyPattern], by: AnyPattern, say: Callable[[AnyPattern], None]
-    ) -> None:
-        """Write a blend; a part is skipped while a signal chooses the other alone."""
-        bit = 0
-        if isinstance(by, SignalLevel) and _is_plain(by) and not by.factor:
-            bit = 1 << self._signals[by.name]
-        first, second = parts
-        self._gated(None, bit << MOST_SIGNALS, 1, lambda: say(first))
-        self._gated(None, bit, 1, lambda: say(second))
-        self._deflection(by)
-        self._say(i.BLEND)
-
-    def _layer(self, pattern: AnyPattern) -> None:
-        """Lay a pattern over what is beneath it: Lévesque 2009, eq. 8.22."""
-        self._deflection(pattern)
-        if _is_own_mask(pattern):
-            self._say(i.OVER_ITSELF)
-        else:
-            self._mask(pattern, paired=isinstance(pattern, paths.AnyShape))
-            self._say(i.OVER)
-
-    # Deflections
-
-    def _deflection(self, pattern: AnyPattern) -> None:
-        """Write a pattern with its changes: amplitude, inversion, vibration, factor."""
-        self._plain(pattern)
-        if pattern.amplitude != 1.0:
-            self._say(i.SCALE, pattern.amplitude)
-        if pattern.inverted:
-            self._say(i.INVERT)
-        swing = pattern.vibration
-        if swing is not None:
-            operation = i.VIBRATE_HIGH if swing.of == "high" else i.VIBRATE_LOW
-            self._say(operation, swing.frequency_hz, swing.amplitude)
-        self._factor(pattern)
-
-    def _plain(self, pattern: AnyPattern) -> None:
-        """Write a pattern without its changes.
+    def _plain(self, pattern: AnyPattern, is_mask: bool) -> None:
+        """Write a pattern without its changes, or its mask.
 
         Raises
         ------
@@ -432,59 +373,114 @@ class _Writer:
             If it is none that is rendered.
         """
         match pattern:
+            case Group():
+                self._group(pattern, is_mask)
+            case StraightLine() | Circle() | Polygon() | PathShape():
+                self._shape(pattern, is_mask)
+            case Dots():
+                dots = [PlacedDot(x, y) for x, y in pattern.centers_mm]
+                self._dots(pattern.dot, pattern.dot.across, dots, is_mask)
+            case Label():
+                written = self._assets.written[pattern]
+                place = (*pattern.place_mm, math.radians(pattern.angle_deg))
+                cells, words = pack_cells(written.lines, written.style, DOT_BITS, place)
+                if not is_mask:
+                    cells[work.TABLE] = self._entries(words)
+                self.say(i.LABEL_MASK if is_mask else i.LABEL, *cells)
+            case Image():
+                bitmap = self._assets.bitmaps[pattern]
+                self._bitmap(opaque(bitmap) if is_mask else bitmap)
+                if pattern.texture is not None and not is_mask:
+                    self._whole(pattern.texture)
+                    self.say(i.MULTIPLY)
+            case _ if is_mask:
+                self.say(i.LEVEL, 1.0)
             case Uniform():
-                self._say(i.LEVEL, pattern.level)
+                self.say(i.LEVEL, pattern.level)
             case SignalLevel():
-                self._say(i.SIGNAL, self._number(pattern.name))
+                self.say(i.SIGNAL_VALUE, self._signals[pattern.name])
             case UniformVibration():
-                self._say(i.VIBRATION, pattern.frequency_hz)
+                self.say(i.LEVEL, 1.0)
+                self.say(i.VIBRATE, pattern.frequency_hz, 1.0)
             case LinearGrating():
-                angle = math.radians(travel_deg(pattern.wave_angle_deg, pattern.ridge_angle_deg))
+                angle = math.radians(pattern.travel_deg)
                 right, down = math.cos(angle), math.sin(angle)
                 start = pattern.start_mm[0] * right + pattern.start_mm[1] * down
-                cycle = Cycle(pattern.ridge_mm, pattern.gap_mm)
-                waveform = self._waveform(cycle, pattern, pattern.velocity_mm_s)
-                self._say(i.LINEAR, right, down, start, *waveform)
+                self.say(i.LINEAR, *self._waveform(pattern), right, down, start)
             case RadialGrating():
-                cycle = Cycle(pattern.ridge_mm, pattern.gap_mm)
-                waveform = self._waveform(cycle, pattern, pattern.velocity_mm_s)
-                self._say(i.RADIAL, *pattern.center_mm, *waveform)
+                self.say(i.RADIAL, *self._waveform(pattern), *pattern.center_mm)
             case AxialGrating():
-                self._axial(pattern)
-            case Image():
-                self._bitmap(self._assets.bitmaps[pattern])
-                if pattern.texture is not None:
-                    self._whole(pattern.texture)
-                    self._say(i.MULTIPLY)
-            case Label():
-                self._label(i.LABEL, pattern)
-            case Dots():
-                self._dots(pattern.dot, pattern.dot.across, _placed(pattern))
+                factor = 1.0 if pattern.distortion is None else max(1.0, pattern.distortion.factor)
+                radius = factor / math.radians(axial_cycle(pattern).length)
+                inner_mm, outer_mm = (radius * fade_mm for fade_mm in pattern.fade_mm)
+                fade = (pattern.middle, inner_mm, 1.0 / (outer_mm - inner_mm))
+                place = (*pattern.center_mm, pattern.start_deg)
+                self.say(i.AXIAL, *self._waveform(pattern), *place, *fade)
             case Tile():
-                size = pattern.width_mm, pattern.height_mm
-                self._say(i.WRAP, *pattern.origin_mm, *size)
-                self._whole(pattern.part)
-                self._say(i.RESTORE)
+                self.say(i.WRAP, *pattern.origin_mm, pattern.width_mm, pattern.height_mm)
+                self._inner(pattern.part)
             case Moving():
-                center = pattern.array_at_mm or (_FAR, _FAR)
                 clock = self._clock(pattern.velocity_by)
-                self._say(i.SHIFT, *pattern.velocity_mm_s, clock, *center)
-                self._whole(pattern.part)
-                self._say(i.RESTORE)
-            case Group():
-                self._group(pattern.operation, pattern.parts, pattern.weights, pattern.by)
-            case StraightLine() | Circle() | Polygon() | PathShape():
-                self._shape(pattern)
+                right, down = pattern.velocity_mm_s
+                self.say(i.SHIFT, right, clock, down, clock, *(pattern.array_at_mm or (_FAR, _FAR)))
+                self._inner(pattern.part)
             case _:
                 raise TypeError(
                     f"a {type(pattern).__name__} is not rendered; resolve the scene first"
                 )
 
-    def _waveform(self, cycle: Cycle, grating: _AnyGrating, velocity: float) -> tuple[float, ...]:
-        own = (cycle.length, cycle.ridge, velocity, self._clock(grating.velocity_by))
-        change = grating.distortion
+    def _inner(self, part: AnyPattern) -> None:
+        """Write what stands at other places, which are gone back from."""
+        self._whole(part)
+        self.say(i.RESTORE)
+        self._measured = None
+
+    def _group(self, group: Group, is_mask: bool) -> None:
+        """Write parts that are put together.
+
+        The mask is by the group's own operation, but that of layers is 1 - Π(1 - μ).
+        """
+        if group.by is not None:
+            self._blend(group.parts, group.by, is_mask)
+            return
+        is_product = group.operation == "multiply"
+        self.say(i.LEVEL, float(is_product))
+        for number, part in enumerate(group.parts):
+            if is_product:
+                self._whole(part, is_mask)
+                self.say(i.MULTIPLY)
+                continue
+            with self._gate(bounds(part, self._boxes), self._shut_by(part)):
+                self.pattern(part, is_mask)
+                if group.weights is not None and not is_mask:
+                    self._scale(group.weights[number])
+                if group.operation == "overwrite" and not is_mask:
+                    self.pattern(part, is_mask=True)
+                    self.say(i.OVER)
+                else:
+                    self.say(_JOINS[group.operation])
+
+    def _blend(self, parts: Sequence[AnyPattern], by: AnyPattern, is_mask: bool) -> None:
+        """Write a blend; a part is skipped while a signal chooses the other alone."""
+        bit = 0
+        changes = by.inverted, by.vibration, by.factor
+        if isinstance(by, SignalLevel) and by.amplitude == 1.0 and not any(changes):
+            bit = 1 << self._signals[by.name]
+        for part, shut_by in zip(parts, (bit << MOST_SIGNALS, bit), strict=True):
+            self._whole(part, is_mask, shut_by)
+        self.pattern(by)
+        self.say(i.BLEND)
+
+    def _waveform(self, grating: LinearGrating | RadialGrating | AxialGrating) -> tuple[float, ...]:
+        """Numbers of a grating's waveform, and of what changes its frequency."""
+        clock, change = self._clock(grating.velocity_by), grating.distortion
+        if isinstance(grating, AxialGrating):
+            cycle, velocity = axial_cycle(grating), grating.velocity_deg_s
+        else:
+            cycle, velocity = Cycle(grating.ridge_mm, grating.gap_mm), grating.velocity_mm_s
+        own = (velocity, clock, cycle.length, cycle.ridge)
         if change is None:
-            return (*own, 0.0)
+            return (*own, 0.0, 0.0, 0.0, 0.0)
         if isinstance(change, Gradual):
             return (*own, change.factor - 1.0, change.start_mm, change.length_mm, 0.0)
         if isinstance(change, TurnPeak):
@@ -492,15 +488,6 @@ class _Writer:
         else:
             center, length = change.center_mm, change.length_mm
         return (*own, change.factor - 1.0, center - length, length, 1.0)
-
-    def _axial(self, grating: AxialGrating) -> None:
-        cycle = axial_cycle(grating)
-        factor = 1.0 if grating.distortion is None else max(1.0, grating.distortion.factor)
-        inner_mm, outer_mm = grating.fade_mm
-        radius = factor / math.radians(cycle.length)
-        fade = (grating.middle, inner_mm * radius, 1.0 / ((outer_mm - inner_mm) * radius))
-        waveform = self._waveform(cycle, grating, grating.velocity_deg_s)
-        self._say(i.AXIAL, *grating.center_mm, grating.start_deg, *fade, *waveform)
 
     def _bitmap(self, bitmap: Bitmap) -> None:
         rows, columns = bitmap.intensities.shape
@@ -510,237 +497,181 @@ class _Writer:
         x, y = bitmap.place_mm
         # The middle of the frame's first pixel is half a pixel beyond the corner.
         first = x - 0.5 / per_mm[0], y - 0.5 / per_mm[1]
-        operation = i.PIXELS if bitmap.nearest else i.IMAGE
         size = columns + 2, rows + 2
-        self._say_table(operation, *first, *per_mm, *size, 0.0, at=6, entries=framed)
+        self.say(i.IMAGE, *first, *per_mm, *size, self._entries(framed), bitmap.nearest)
 
-    def _label(self, operation: int, label: Label) -> None:
-        packed = pack_label(label, self._assets.written[label])
-        self._say_table(operation, *packed.numbers.tolist(), at=TABLE, entries=packed.table)
+    # Shapes
+
+    def _shape(self, shape: paths.AnyShape, is_mask: bool) -> None:
+        """Write a shape: its fill, the stroke or dots that it is drawn with, and its cue."""
+        fill = None if isinstance(shape, StraightLine) else shape.fill
+        if fill is not None and not is_mask:
+            self._whole(fill.texture)
+        self._measure(shape)
+        if is_mask:
+            self._drawn(shape, is_mask=True)
+            if fill is not None:
+                self.say(i.INSIDE, -_FAR, 1.0)
+                self.say(i.MAXIMUM)
+            if shape.is_cued_over:
+                self.say(i.PROFILE, *_profile(shape.cue_width_mm, shape.cue_edge_mm))
+                self.say(i.OVER_ITSELF)
+            return
+        if fill is not None:
+            begin, slope = -_FAR, 1.0
+            if not fill.blended:
+                begin = drawn_radius_mm(shape) + fill.gap_mm
+                slope = 1.0 / max(fill.fade_mm, _LEAST_FADE_MM)
+            self.say(i.INSIDE, begin, slope)
+            self.say(i.MULTIPLY)
+        self._drawn(shape, is_mask=False)
+        if shape.stroke is not None:
+            self._texture(shape, shape.stroke)
+        if fill is not None and fill.blended:
+            self._drawn(shape, is_mask=True, is_textured=False)
+            self.say(i.OVER)
+        elif fill is not None:
+            self.say(i.ADD)
+        if shape.cue is not None and shape.is_cued_over:
+            self._cue(shape, shape.cue)
+
+    def _measure(self, shape: paths.AnyShape) -> None:
+        """Write the coordinates of a shape's path, unless they are known already."""
+        if self._measured is shape:
+            return
+        self._measured = shape
+        stroke, cue = shape.stroke, shape.cue
+        along = None if stroke is None else stroke.along
+        is_along = along is not None or cue is not None
+        if isinstance(shape, Circle):
+            self.say(i.CIRCLE, *shape.center_mm, shape.radius_mm, is_along)
+            return
+        reach, fill = max(reach_mm(shape), drawn_radius_mm(shape)), None
+        if not isinstance(shape, StraightLine):
+            fill = shape.fill
+        if fill is not None and not fill.blended:
+            reach = max(reach, drawn_radius_mm(shape) + fill.gap_mm + fill.fade_mm)
+        if fill is None and stroke is None and not shape.is_cued_over:
+            return
+        rounded = is_along and _is_rounded(shape)
+        segments = list(paths.segments_of(shape, rounded=rounded))
+        size = len(segments[0])
+        self.say(i.PATH, work.CODE + len(self.numbers) + i.HEAD)
+        path = len(self.numbers)
+        for number in range(0, len(segments), _CHUNK):
+            some = segments[number : number + _CHUNK]
+            ends = ((one[0] + one[2] * one[4], one[5]) for one in some)
+            box = around([*((one[0], one[1]) for one in some), *ends])
+            with self._gate(box.grown(reach)):
+                self.say(i.SEGMENTS, size, *itertools.chain(*some))
+            end = work.CODE + len(self.numbers)
+            begin = end - size * len(some)
+            if number == 0:
+                self.numbers[path - 1] = begin  # the nearest segment where none is near
+            if fill is not None:
+                with self._gate(box._replace(left=-_FAR)):
+                    self.say(i.CROSSINGS, begin, end, size)
+        moves = along is not None and paths.cycles_differ(shape)
+        velocity = along.velocity_mm_s if along is not None and moves else 0.0
+        clock = self._clock(along.velocity_by) if along is not None else -1.0
+        self.say(i.MEASURED, rounded, velocity, clock)
+
+    def _drawn(self, shape: paths.AnyShape, *, is_mask: bool, is_textured: bool = True) -> None:
+        """Write the profile of what a shape is drawn with, or its dots."""
+        stroke, dots = shape.stroke, shape.dots
+        if stroke is not None:
+            across = stroke.across if is_textured else None
+            self.say(i.PROFILE, *_profile(stroke.width_mm, stroke.edge, across, is_mask))
+        elif dots is not None:
+            across = dots.dot.across if is_textured else None
+            motion = dots.velocity_mm_s, self._clock(dots.velocity_by)
+            vertices = dots.vertex_vibration
+            look = self._dots(dots.dot, across, rows_of(shape)[0], is_mask, vertices, motion)
+            for row in paths.moving_rows(shape):
+                self.say(i.DOT_ROW, look, *row)
+        else:
+            self.say(i.LEVEL, 0.0)
 
     def _dots(
         self,
         style: DotStyle,
         across: Across | None,
-        numbers: Sequence[float],
-        *,
-        is_mask: bool = False,
+        dots: Sequence[PlacedDot],
+        is_mask: bool,
         vertices: Vibration | None = None,
-        motion: tuple[float, float, float] = (0.0, 0.0, -1.0),
-    ) -> None:
-        profile = _profile(2 * style.radius_mm, style.edge, across, is_mask=is_mask)
-        own = (-1.0, -1.0) if vertices is None else (vertices.frequency_hz, vertices.amplitude)
-        swings = (*_swing(style.vibration), *own)
-        self._say(i.DOTS, *profile, style.amplitude, *motion, *swings, *numbers)
-
-    def _dotted(self, shape: paths.AnyShape, across: Across | None, *, is_mask: bool) -> None:
-        """Write the dots along a shape, or their opacity mask."""
-        dots = shape.dots
-        assert dots is not None
-        self._dots(
-            dots.dot,
-            across,
-            paths.dotted_numbers(shape),
-            is_mask=is_mask,
-            vertices=dots.vertex_vibration,
-            motion=(
-                float(bool(dots.velocity_mm_s)),
-                dots.velocity_mm_s,
-                self._clock(dots.velocity_by),
-            ),
+        motion: tuple[float, float] = (0.0, -1.0),
+    ) -> float:
+        """Write dots that stay, and return the place of the numbers of their look."""
+        own = (-1.0, -1.0) if vertices is None else _swing(vertices)
+        look = (
+            *_profile(2 * style.radius_mm, style.edge, across, is_mask),
+            style.amplitude,
+            *_swing(style.vibration),
+            *own,
+            *motion,
         )
+        self.say(i.LEVEL, 0.0, *look)
+        at = float(work.CODE + len(self.numbers) - len(look))
+        for number in range(0, len(dots), _CHUNK):
+            some = dots[number : number + _CHUNK]
+            with self._gate(around((dot.x_mm, dot.y_mm) for dot in some).grown(style.radius_mm)):
+                self.say(i.DOTS, at, *itertools.chain(*some))
+        return at
 
-    # Shapes
-
-    def _shape(self, shape: paths.AnyShape) -> None:
-        """Write a shape: its fill, the stroke or dots that it is drawn with, and its cue.
-
-        The coordinates of its path are left for its mask.
-        """
-        fill, cue = _fill_of(shape), shape.cue
-        if fill is not None:
-            self._whole(fill.texture)
-        self._coordinates(shape, along=True)
-        if shape.stroke is not None:
-            self._stroke(shape, shape.stroke)
-        elif shape.dots is not None:
-            self._dotted(shape, shape.dots.dot.across, is_mask=False)
-        else:
-            self._say(i.LEVEL, 0.0)
-        if fill is not None and fill.blended:
-            self._outline(shape, None)
-            self._say(i.FILL_BLENDED)
-        elif fill is not None:
-            slope = min(1.0 / fill.fade_mm, _SHARPEST) if fill.fade_mm else _SHARPEST
-            self._say(i.FILL, drawn_radius_mm(shape) + fill.gap_mm, slope)
-        if cue is not None and shape.is_cued_over:
-            self._cue(shape, cue)
-
-    def _coordinates(self, shape: paths.AnyShape, *, along: bool) -> None:
-        """Write the coordinates of a shape's path, as far as they are needed."""
-        fill, stroke = _fill_of(shape), shape.stroke
-        if fill is None and stroke is None and not shape.is_cued_over:
-            return
-        marked = isinstance(shape, Polygon) and shape.markers is not None
-        textured = stroke is not None and (stroke.along is not None or marked)
-        along = along and (textured or shape.cue is not None)
-        if isinstance(shape, Circle):
-            self._say(i.CIRCLE, *shape.center_mm, shape.radius_mm, float(along))
-            return
-        reach = max(reach_mm(shape), drawn_radius_mm(shape))
-        if fill is not None and not fill.blended:
-            reach = max(reach, drawn_radius_mm(shape) + fill.gap_mm + fill.fade_mm)
-        clock = -1.0
-        if stroke is not None and stroke.along is not None:
-            clock = self._clock(stroke.along.velocity_by)
-        size = i.ACROSS if not along else i.ROUNDED if _is_rounded(shape) else i.ALONG
-        chunks = paths.path_chunks(shape, size)
-        self._say(i.PATH, size, float(fill is not None), reach, clock, *chunks)
-
-    def _outline(self, shape: paths.AnyShape, across: Across | None) -> None:
-        """Write the profile of what a shape is drawn with."""
-        if shape.stroke is not None:
-            stroke = shape.stroke
-            self._say(i.PROFILE, *_profile(stroke.width_mm, stroke.edge, across, is_mask=True))
-        elif shape.dots is not None:
-            self._dotted(shape, across, is_mask=True)
-        else:
-            self._say(i.LEVEL, 0.0)
-
-    def _stroke(self, shape: paths.AnyShape, stroke: Stroke) -> None:
-        """Write a stroke: its profile times what its textures leave, eqs. 8.7-8.14."""
-        profile = _profile(stroke.width_mm, stroke.edge, stroke.across)
-        self._say(i.PROFILE, *profile)
-        if stroke.amplitude != 1.0:
-            self._say(i.SCALE, stroke.amplitude)
+    def _texture(self, shape: paths.AnyShape, stroke: Stroke) -> None:
+        """Write what the textures of a stroke leave of its profile: eqs. 8.7-8.14."""
+        self._scale(stroke.amplitude)
+        swing, along = stroke.vibration, stroke.along
         markers = shape.markers if isinstance(shape, Polygon) else None
         cue = None if shape.is_cued_over else shape.cue
-        swing, along = stroke.vibration, stroke.along
         if not (along or stroke.outlined or swing or markers or cue):
             return
+        # What an outline leaves out, γ_o of eq. 8.9, ends where its own edge begins.
+        groove = _profile(stroke.width_mm - 2 * stroke.edge, stroke.edge)
         if along is not None:
             cycle, velocity = stroke_cycles(shape)[0], along.velocity_mm_s
             if paths.cycles_differ(shape):  # the places along it are in ridges already
-                cycle, velocity = Cycle(1.0, 1.0), 0.0
+                cycle, velocity = Cycle(1.0, 0.0), 0.0
             clock = self._clock(along.velocity_by)
-            numbers = (cycle.length, cycle.ridge, along.amplitude, velocity, clock)
-            self._say(i.BANDS, i.ALONG_ROW, *numbers)
+            self.say(i.BANDS, velocity, clock, cycle.length, cycle.ridge, along.amplitude, 0.0)
             if along.whole_edges:
-                self._say(i.GROOVE, *profile)
+                self.say(i.PROFILE, *groove)
+                self.say(i.MULTIPLY)
+        elif stroke.outlined:
+            self.say(i.PROFILE, *groove)
         else:
-            self._say(i.LEVEL, float(stroke.outlined))
-            if stroke.outlined:
-                self._say(i.GROOVE, *profile)
-        if swing is not None and swing.of == "low":
-            self._say(i.VIBRATE_HIGH, swing.frequency_hz, swing.amplitude)
-        self._say(i.INVERT)
-        if swing is not None and swing.of == "high":
-            self._say(i.VIBRATE_HIGH, swing.frequency_hz, swing.amplitude)
+            self.say(i.LEVEL, 0.0)
+        self.say(i.INVERT)
+        self._vibrate(swing)
         if markers is not None and isinstance(shape, Polygon):
-            numbers = (stroke.width_mm / 2, 1.0 / markers.blend_mm, *_swing(markers.swing))
-            self._say(i.MARKERS, *numbers, *paths.marker_numbers(shape))
+            own = (1.0 / markers.blend_mm, *_swing(markers.swing))
+            self.say(i.MARKERS, *own, *paths.marker_numbers(shape))
         if cue is not None:
             self._cue(shape, cue)
-        self._say(i.MULTIPLY)
+        self.say(i.MULTIPLY)
 
     def _cue(self, shape: paths.AnyShape, cue: MovingCue) -> None:
         """Lay the bands of a cue over what is uppermost: 9.3 and 9.3.2."""
         if cue.way == "add":
-            self._say(i.SCALE, 1.0 - cue.share)
-        cycle, row = cue_cycle(shape), i.PLACE_ROW if _is_rounded(shape) else i.ALONG_ROW
-        clock = self._clock(cue.velocity_by)
-        self._say(i.BANDS, row, cycle.length, cycle.ridge, 1.0, cue.velocity_mm_s, clock)
+            self._scale(1.0 - cue.share)
+        cycle, clock = cue_cycle(shape), self._clock(cue.velocity_by)
+        on_arcs = float(_is_rounded(shape))
+        self.say(i.BANDS, cue.velocity_mm_s, clock, cycle.length, cycle.ridge, 1.0, on_arcs)
         if shape.is_cued_over:
-            self._say(i.PROFILE, *_profile(shape.cue_width_mm, shape.cue_edge_mm, None))
-            self._say(i.MULTIPLY)
+            self.say(i.PROFILE, *_profile(shape.cue_width_mm, shape.cue_edge_mm))
+            self.say(i.MULTIPLY)
             # Bands that are not wider than a row of dots end as the row does.
             if paths.is_open(shape) and shape.cue_width_mm > shape.width_mm:
-                self._say(i.BEYOND, 2.0 / shape.width_mm)
-                self._say(i.MULTIPLY)
+                self.say(i.BEYOND, 2.0 / shape.width_mm)
+                self.say(i.MULTIPLY)
         shows, hides = {
             "vibrate": (1.0, 1.0),
             "blend": (cue.level, 1.0),
             "mask": (0.0, 2.0),
             "add": (cue.share, 0.0),
         }[cue.way]
-        self._say(i.CUE, shows, hides, *_swing(cue.swing))
-        self._say(i.OVER)
-
-    # Opacity masks
-
-    def _covers(self, pattern: AnyPattern) -> bool:
-        """Tell whether a pattern's mask is 1 everywhere, but for its factor."""
-        if is_everywhere(pattern):
-            return True
-        if isinstance(pattern, Group):
-            covers = [self._covers_alone(part) for part in pattern.parts]
-            return (all if pattern.operation in ("multiply", "blend") else any)(covers)
-        return not isinstance(pattern, Image | Label | Dots | paths.AnyShape)
-
-    def _covers_alone(self, pattern: AnyPattern) -> bool:
-        return not pattern.factor and self._covers(pattern)
-
-    def _mask(self, pattern: AnyPattern, *, paired: bool = False) -> None:
-        """Write the opacity mask of a pattern: Lévesque 2009, 8.4.5.
-
-        Paired with its deflection, it takes the coordinates of a shape's path from there.
-        """
-        if self._covers(pattern):
-            self._say(i.LEVEL, 1.0)
-        else:
-            match pattern:
-                case Image():
-                    self._bitmap(opaque(self._assets.bitmaps[pattern]))
-                case Label():
-                    self._label(i.LABEL_MASK, pattern)
-                case Dots():
-                    self._dots(pattern.dot, pattern.dot.across, _placed(pattern), is_mask=True)
-                case Group():
-                    self._group_mask(pattern)
-                case StraightLine() | Circle() | Polygon() | PathShape():
-                    self._shape_mask(pattern, paired)
-                case _:
-                    self._say(i.LEVEL, 1.0)
-        self._factor(pattern)
-
-    def _group_mask(self, group: Group) -> None:
-        """Write the mask of a group: by its own operation, but that of layers is 1 - Π(1 - μ)."""
-        if group.by is not None:
-            self._blend(group.parts, group.by, self._mask)
-            return
-        if group.operation == "multiply":
-            self._say(i.LEVEL, 1.0)
-            for part in group.parts:
-                self._mask(part)
-                self._say(i.MULTIPLY)
-            return
-        self._say(i.LEVEL, 0.0)
-        for part in group.parts:
-
-            def say(part: AnyPattern = part) -> None:
-                self._mask(part)
-                self._say(_JOINS[group.operation])
-
-            self._gated(self._box(part), self._shut_by(part), 0, say)
-
-    def _shape_mask(self, shape: paths.AnyShape, paired: bool) -> None:
-        if not paired:
-            self._coordinates(shape, along=False)
-        across: Any = None
-        if shape.stroke is not None:
-            across = shape.stroke.across
-        elif shape.dots is not None:
-            across = shape.dots.dot.across
-        self._outline(shape, across)
-        if _fill_of(shape) is not None:
-            self._say(i.FILL_MASK)
-        if shape.is_cued_over:
-            self._say(i.PROFILE, *_profile(shape.cue_width_mm, shape.cue_edge_mm, None))
-            self._say(i.OVER_ITSELF)
-
-
-def _fill_of(shape: paths.AnyShape) -> Fill | None:
-    return None if isinstance(shape, StraightLine) else shape.fill
+        self.say(i.CUE, shows, hides, *_swing(cue.swing))
+        self.say(i.OVER)
 
 
 def _is_rounded(shape: paths.AnyShape) -> bool:
@@ -748,45 +679,43 @@ def _is_rounded(shape: paths.AnyShape) -> bool:
     return (isinstance(shape, Polygon) and shape.join == "rounded") or paths.cycles_differ(shape)
 
 
-def _is_plain(pattern: Pattern) -> bool:
-    return pattern.amplitude == 1.0 and not pattern.inverted and pattern.vibration is None
-
-
-def _is_own_mask(pattern: AnyPattern) -> bool:
-    """Tell whether a pattern's deflection is its mask, too."""
-    if not _is_plain(pattern) or pattern.factor:
-        return False
-    if isinstance(pattern, Dots):
-        return _is_plain_dot(pattern.dot)
-    if not isinstance(pattern, paths.AnyShape) or _fill_of(pattern) or pattern.cue:
-        return False
-    if pattern.dots is not None:
-        return pattern.dots.vertex_vibration is None and _is_plain_dot(pattern.dots.dot)
-    stroke = pattern.stroke
-    marked = isinstance(pattern, Polygon) and pattern.markers is not None
-    if stroke is None or marked or stroke.amplitude != 1.0 or stroke.outlined:
-        return False
-    return stroke.across is None and stroke.along is None and stroke.vibration is None
-
-
-def _is_plain_dot(style: DotStyle) -> bool:
-    return style.amplitude == 1.0 and style.across is None and style.vibration is None
-
-
-def _placed(dots: Dots) -> list[float]:
-    return paths.dot_chunks([PlacedDot(x, y) for x, y in dots.centers_mm])
-
-
 def _profile(
-    width: float, edge: float, across: Across | None, *, is_mask: bool = False
+    width: float, edge: float, across: Across | None = None, is_mask: bool = False
 ) -> tuple[float, ...]:
     half = width / 2
-    weight, cycles = (0.0, 0) if across is None else (across.amplitude, across.cycles)
-    return (half - edge, 1.0 / edge, half, weight, cycles / width, float(is_mask))
+    texture = (0.0, 0.0) if across is None else (across.amplitude, across.cycles / width)
+    return (half - edge, 1.0 / edge, half, *texture, is_mask)
 
 
 def _swing(vibration: Vibration | None) -> tuple[float, float]:
     return (0.0, 0.0) if vibration is None else (vibration.frequency_hz, vibration.amplitude)
+
+
+class Moment(TypedDict, total=False):
+    """Moment at which a scene is shown as a whole.
+
+    Parameters
+    ----------
+    time_s
+        Time since the scene was first shown, in seconds.
+    parity
+        0 for actuators whose column and row are both even or both odd, 1 for the others.
+    noise_seed
+        Seed of the noise that stands for vibrations; None shows them as they are at the time.
+        Gratings that travel stand where they do at first then.
+    velocity_mm_s, switches
+        Velocity of the hand for as long as signals remember, and states of the switches, as
+        `vbraille.scene.signals.packed` has them.
+    every_layer
+        Whether all signals are 1, so that every layer is there.
+    """
+
+    time_s: float
+    parity: int
+    noise_seed: int | None
+    velocity_mm_s: Point
+    switches: int
+    every_layer: bool
 
 
 class SceneMap:
@@ -806,19 +735,11 @@ class SceneMap:
     """
 
     def __init__(self, scene: Scene, assets: Assets | None = None) -> None:
-        self._scene, self._assets = scene, assets or Assets()
+        self._scene, self._assets = scene, assets
         self._compiled: dict[bool, tuple[NDArray[np.float64], NDArray[np.uint16]]] = {}
 
     def deflections(
-        self,
-        x_mm: NDArray[np.float64],
-        y_mm: NDArray[np.float64],
-        *,
-        time_s: float = 0.0,
-        parity: int = 0,
-        noise_seed: int | None = None,
-        velocity_mm_s: Point = (0.0, 0.0),
-        switches: int = 0,
+        self, x_mm: NDArray[np.float64], y_mm: NDArray[np.float64], **moment: Unpack[Moment]
     ) -> NDArray[np.float32]:
         """Compute the deflections of actuators at the places of a raster: Lévesque 2009, 8.3.3.
 
@@ -826,27 +747,43 @@ class SceneMap:
         ----------
         x_mm, y_mm : float64[w], float64[h]
             Places of its columns and lines on the canvas.
-        time_s
-            Time since the scene was first shown, in seconds.
-        parity
-            0 for actuators whose column and row are both even or both odd, 1 for the others.
-        noise_seed
-            Seed of the noise that stands for vibrations; None shows them as they are at the time.
-            Gratings that travel stand where they do at first then.
-        velocity_mm_s, switches
-            Velocity of the hand for as long as signals remember, and states of the switches, as
-            `vbraille.scene.signals.packed` has them.
+        moment
+            When that is; see `Moment`.
 
         Returns
         -------
         float32[h, w]
             Deflections, 0 … 1; 0 beyond the canvas.
         """
-        given = self.signal_values(time_s, velocity_mm_s, switches)
-        return self._raster(False, x_mm, y_mm, time_s, parity, noise_seed, given)
+        return self._raster(False, x_mm, y_mm, **moment)
 
     def opacity(
+        self, x_mm: NDArray[np.float64], y_mm: NDArray[np.float64], **moment: Unpack[Moment]
+    ) -> NDArray[np.float32]:
+        """Compute the opacity mask of the scene at the places of a raster: Lévesque 2009, 8.4.5.
+
+        Arguments and result are as those of `deflections`; only the mask of a blend that is chosen
+        by what moves depends on the time. A scene of one element has the mask of that.
+        """
+        return self._raster(True, x_mm, y_mm, **moment)
+
+    def signal_values(
+        self, time_s: float, velocity_mm_s: Point, switches: int
+    ) -> NDArray[np.float64]:
+        """Compute the signals, in their order; then NaN, as no array has a centre: float64[10]."""
+        at = np.zeros(work.AT)
+        if self._scene.signals:
+            at[work.TIME], at[work.SWITCHES] = time_s, switches
+            at[work.VX], at[work.VY] = velocity_mm_s
+            numbers = np.zeros(work.CODE)
+            _write_signals(self._scene, numbers)
+            kernels.begin(numbers, at)
+            kernels.compute(numbers, at, 0.0)
+        return np.append(at[work.SIGNAL : work.MEMORY], (math.nan, math.nan))
+
+    def _raster(
         self,
+        is_mask: bool,
         x_mm: NDArray[np.float64],
         y_mm: NDArray[np.float64],
         *,
@@ -857,60 +794,21 @@ class SceneMap:
         switches: int = 0,
         every_layer: bool = False,
     ) -> NDArray[np.float32]:
-        """Compute the opacity mask of the scene at the places of a raster: Lévesque 2009, 8.4.5.
-
-        The arguments are those of `deflections`, and whether all signals are 1, so that every layer
-        is there; only the mask of a blend that is chosen by what moves depends on the time. A scene
-        of one element has the mask of that.
-
-        Returns
-        -------
-        float32[h, w]
-            Opacity, 0 … 1; 0 beyond the canvas.
-        """
         given = self.signal_values(time_s, velocity_mm_s, switches)
         if every_layer:
             given[:MOST_SIGNALS] = 1.0
-        return self._raster(True, x_mm, y_mm, time_s, parity, noise_seed, given)
-
-    def signal_values(
-        self, time_s: float, velocity_mm_s: Point, switches: int
-    ) -> NDArray[np.float64]:
-        """Compute the signals, in their order; then NaN, as no array has a centre: float64[10]."""
-        at = np.zeros(work.AT)
-        if self._scene.signals:
-            at[work.TIME], at[work.SWITCHES] = time_s, switches
-            at[work.VX], at[work.VY] = velocity_mm_s
-            numbers = np.zeros(i.CODE)
-            numbers[i.SIGNALS :] = signal_numbers(self._scene)
-            kernels.begin(numbers, at)
-            kernels.compute(numbers, at, 0.0)
-        return np.append(at[work.SIGNAL : work.MEMORY], (math.nan, math.nan))
-
-    def _raster(
-        self,
-        hiding: bool,
-        x_mm: NDArray[np.float64],
-        y_mm: NDArray[np.float64],
-        time_s: float,
-        parity: int,
-        noise_seed: int | None,
-        given: NDArray[np.float64],
-    ) -> NDArray[np.float32]:
-        from vbraille.render import evaluating
-
-        if hiding not in self._compiled:
-            writer = _Writer(self._scene, self._assets)
-            (writer.hiding if hiding else writer.scene)()
-            self._compiled[hiding] = writer.finish(np.zeros(i.CODE))
+        if is_mask not in self._compiled:
+            numbers = np.zeros(work.CODE)
+            self._compiled[is_mask] = _written(self._scene, self._assets, numbers, is_mask=is_mask)
+        numbers, table = self._compiled[is_mask]
         x_mm, y_mm = np.ascontiguousarray(x_mm, np.float64), np.ascontiguousarray(y_mm, np.float64)
         out = np.empty((y_mm.size, x_mm.size), np.float32)
         noise = np.empty((0, 0), np.float32)
         if noise_seed is not None:
             noise = np.random.default_rng(noise_seed).random(out.shape, np.float32) * 2 - 1
-        rows = np.zeros((i.SCRATCH_ROWS, evaluating.TILE_COLUMNS * evaluating.TILE_LINES))
-        rows[i.GIVEN_ROW, : given.size] = given
+        places = i.BLOCK_COLUMNS * i.BLOCK_LINES
+        rows = np.zeros((work.LIVE_ROW + 1 + int(numbers[work.INSTRUCTIONS]) // places, places))
+        rows[work.GIVEN_ROW, : given.size] = given
         time = math.nan if noise_seed is not None else time_s
-        sign = -1.0 if parity else 1.0
-        evaluating.raster(*self._compiled[hiding], rows, x_mm, y_mm, sign, noise, time, out)
+        i.raster(numbers, table, rows, x_mm, y_mm, -1.0 if parity else 1.0, noise, time, out)
         return out

@@ -1,5 +1,9 @@
 """The evaluator of compiled scenes, and frames and rasters made by it.
 
+A scene is a list of instructions. First those are found that matter to any of the places that are
+asked for; then each is done for all of them, on a stack of rows of deflections. An instruction is
+its operation, the number of its numbers, how many rows it adds to the stack, and its constants.
+
 The evaluator is large, and would be compiled anew into everything that makes frames: each kind of
 tick, and each layout of frames. So it is compiled once, as a function of C, and those call it by
 its name, as they call functions of the C library.
@@ -7,241 +11,303 @@ its name, as they call functions of the C library.
 
 import math
 
-import numpy as np
-from llvmlite import binding, ir
+from llvmlite import binding
 from numba import carray, cfunc, config, types  # pyright: ignore[reportPrivateImportUsage]
-from numba.extending import intrinsic
 
 from vbraille.caching import keep_compiled
-from vbraille.render import instructions as i
-from vbraille.render import shapekernels as shapes
-from vbraille.render import texturekernels as textures
-from vbraille.render.cellkernels import label, label_opacity
-from vbraille.render.signalkernels import begin, compute, shut_gates
-from vbraille.render.waves import compiled
-from vbraille.render.work import AT, MEMORY, MOST_SIGNALS, SIGNAL, THETA, TIME, X, Y
+from vbraille.render.cellkernels import highest_dot, opacity
+from vbraille.render.patternkernels import (
+    axial,
+    beyond,
+    circle,
+    crossed,
+    dot_row,
+    dots,
+    grating,
+    image,
+    in_ridge,
+    markers,
+    moved,
+    nearest,
+    profile,
+    rounded,
+)
+from vbraille.render.signalkernels import shut_gates
+from vbraille.render.waves import compiled, phase, ridge, swung
+from vbraille.render.work import (
+    ACROSS_ROW,
+    ALONG_ROW,
+    BOTTOM_MM,
+    CODE,
+    GIVEN_ROW,
+    INSIDE_ROW,
+    LIVE_ROW,
+    MOST_SIGNALS,
+    ORIGIN_X,
+    ORIGIN_Y,
+    PART_ROW,
+    PLACE_ROW,
+    RIGHT_MM,
+    SIGN_ROW,
+    SIGNAL,
+    STACK_ROW,
+    TIME,
+    X_ROW,
+    Y_ROW,
+    X,
+    Y,
+)
 
+(
+    END,
+    GATE,  # skip instructions beyond a box, or where signals shut them
+    LEVEL,
+    SIGNAL_VALUE,
+    INVERT,
+    ADD,  # join the two uppermost values: their sum, at most 1
+    MAXIMUM,
+    MULTIPLY,
+    OVER,  # r, δ, μ -> δ + (1 - μ) r, at most 1: Lévesque 2009, eq. 8.22
+    OVER_ITSELF,  # the same where δ is its own mask
+    BLEND,  # δ₁, δ₂, α -> (1 - α) δ₁ + α δ₂: eq. 8.21
+    VIBRATE,  # δ -> δ δ¹: eq. 8.3
+    LINEAR,
+    RADIAL,
+    AXIAL,
+    IMAGE,
+    LABEL,
+    LABEL_MASK,
+    DOTS,  # raise to dots whose look is at a place of the program
+    DOT_ROW,
+    CIRCLE,  # coordinates of a shape
+    PATH,
+    SEGMENTS,
+    CROSSINGS,
+    MEASURED,
+    INSIDE,  # 1 inside from a distance on, after a fade
+    PROFILE,
+    BANDS,  # along the path, eq. 8.11
+    MARKERS,
+    BEYOND,
+    CUE,  # bands -> what they show, what they hide: 9.3 and 9.3.2
+    WRAP,  # wrap the places into a tile, until RESTORE
+    SHIFT,  # move the places, until RESTORE
+    RESTORE,
+) = range(34)
+# Values that an instruction adds to the stack, beyond those that it takes.
+ADDED = (
+    dict.fromkeys((ADD, MAXIMUM, MULTIPLY, OVER_ITSELF), -1)
+    | dict.fromkeys((OVER, BLEND, RESTORE), -2)
+    | dict.fromkeys((LEVEL, SIGNAL_VALUE, LINEAR, RADIAL, AXIAL, IMAGE, LABEL, LABEL_MASK), 1)
+    | dict.fromkeys((INSIDE, PROFILE, BANDS, BEYOND, CUE), 1)
+    | dict.fromkeys((WRAP, SHIFT), 2)
+)
+HEAD = 3  # numbers of an instruction before its constants
+_FAR = 1e30
 _NO_PLACE = 1e9  # mm; a centre farther away is none
-_ROUNDING_MM = 1e-6
+_CENTER_X, _CENTER_Y = MOST_SIGNALS, MOST_SIGNALS + 1
+GIVEN = MOST_SIGNALS + 2
 
 
 @compiled
-def _evaluate(numbers, table, rows, count, gates, time, left, top_mm, right, bottom):
-    """Compute the deflections at ``count`` places, which are in the rows X and Y.
-
-    The row of signs says which way each place swings, 1 or -1. Without a time, which is NaN then,
-    it has noise from -1 to 1 that stands for vibrations. The row `GIVEN_ROW` has the signals, by
-    which ``gates`` are shut. The deflections go to the row `STACK`. All places are in the box that
-    is given last.
-    """
-    here = np.int64(i.CODE)
-    top = i.STACK  # the row above the uppermost
-    while True:
-        operation, at = int(numbers[here]), here + 2
-        here += int(numbers[here + 1])
-        if operation == i.END:
-            return
-        if operation == i.GATE:
-            if (
-                gates & int(numbers[at + 4]) != 0
-                or numbers[at + 2] < left
-                or numbers[at] > right
-                or numbers[at + 3] < top_mm
-                or numbers[at + 1] > bottom
-            ):
-                here += int(numbers[at + 5])
-                for _ in range(int(numbers[at + 6])):
-                    _level(rows, top, 0.0, count)
-                    top += 1
-        elif operation == i.LEVEL:
-            _level(rows, top, numbers[at], count)
-            top += 1
-        elif operation == i.SIGNAL:
-            _level(rows, top, rows[i.GIVEN_ROW, int(numbers[at])], count)
-            top += 1
-        elif operation == i.ADD:
-            top -= 1
-            for n in range(count):
-                value = rows[top - 1, n] + rows[top, n]
-                rows[top - 1, n] = value if value < 1.0 else 1.0
-        elif operation == i.MAXIMUM:
-            top -= 1
-            for n in range(count):
-                value = rows[top, n]
-                rows[top - 1, n] = value if value > rows[top - 1, n] else rows[top - 1, n]
-        elif operation == i.MULTIPLY:
-            top -= 1
-            for n in range(count):
-                rows[top - 1, n] *= rows[top, n]
-        elif operation == i.OVER:
-            top -= 2
-            _over(rows, top, top + 1, count)
-        elif operation == i.OVER_ITSELF:
-            top -= 1
-            _over(rows, top, top, count)
-        elif operation == i.BLEND:
-            top -= 2
-            for n in range(count):
-                first = rows[top - 1, n]
-                rows[top - 1, n] = first + rows[top + 1, n] * (rows[top, n] - first)
-        elif operation == i.SCALE:
-            _scale(rows, top - 1, numbers[at], count)
-        elif operation == i.BY_SIGNAL:
-            _scale(rows, top - 1, rows[i.GIVEN_ROW, int(numbers[at])], count)
-        elif operation == i.INVERT:
-            for n in range(count):
-                rows[top - 1, n] = 1.0 - rows[top - 1, n]
-        elif operation == i.VIBRATE_HIGH:
-            textures.vibrate_high(numbers, rows, at, time, top - 1, count)
-        elif operation == i.VIBRATE_LOW:
-            textures.vibrate_low(numbers, rows, at, time, top - 1, count)
-        elif operation == i.VIBRATION:
-            textures.vibrate(numbers, rows, at, time, top, count)
-            top += 1
-        elif operation == i.LINEAR:
-            textures.linear(numbers, rows, at, time, top, count)
-            top += 1
-        elif operation == i.RADIAL:
-            textures.radial(numbers, rows, at, time, top, count)
-            top += 1
-        elif operation == i.AXIAL:
-            textures.axial(numbers, rows, at, time, top, count)
-            top += 1
-        elif operation == i.IMAGE:
-            textures.image(numbers, table, rows, at, top, count)
-            top += 1
-        elif operation == i.PIXELS:
-            textures.pixels(numbers, table, rows, at, top, count)
-            top += 1
-        elif operation == i.LABEL:
-            label(numbers, at, table, rows[i.X_ROW], rows[i.Y_ROW], count, rows[top])
-            top += 1
-        elif operation == i.LABEL_MASK:
-            label_opacity(numbers, at, rows[i.X_ROW], rows[i.Y_ROW], count, rows[top])
-            top += 1
-        elif operation == i.DOTS:
-            shapes.dots(numbers, rows, at, time, top, count, left, top_mm, right, bottom)
-            top += 1
-        elif operation == i.CIRCLE:
-            shapes.circle(numbers, rows, at, count)
-        elif operation == i.PATH:
-            shapes.path(numbers, rows, at, time, count, left, top_mm, right, bottom)
-        elif operation == i.PROFILE:
-            shapes.profile(numbers, rows, at, i.ACROSS_ROW, top, count)
-            top += 1
-        elif operation == i.BANDS:
-            shapes.bands(numbers, rows, at, time, top, count)
-            top += 1
-        elif operation == i.GROOVE:
-            shapes.groove(numbers, rows, at, top - 1, count)
-        elif operation == i.MARKERS:
-            shapes.markers(numbers, rows, at, time, top - 1, count)
-        elif operation == i.BEYOND:
-            shapes.beyond(numbers, rows, at, top, count)
-            top += 1
-        elif operation == i.CUE:
-            shapes.cue(numbers, rows, at, time, top - 1, count)
-            top += 1
-        elif operation == i.FILL:
-            top -= 1
-            shapes.fill(numbers, rows, at, top, count)
-        elif operation == i.FILL_BLENDED:
-            top -= 2
-            shapes.fill_blended(rows, top, count)
-        elif operation == i.FILL_MASK:
-            shapes.fill_mask(rows, top - 1, count)
-        elif operation == i.WRAP or operation == i.SHIFT:
-            for n in range(count):
-                rows[top, n], rows[top + 1, n] = rows[i.X_ROW, n], rows[i.Y_ROW, n]
-            top += 2
-            if operation == i.WRAP:
-                _wrap(numbers, rows, at, count)
-            else:
-                _shift(numbers, rows, at, time, count)
-            left, top_mm, right, bottom = _bounds(rows, count)
-        elif operation == i.RESTORE:
-            top -= 2
-            for n in range(count):
-                rows[i.X_ROW, n], rows[i.Y_ROW, n] = rows[top - 1, n], rows[top, n]
-                rows[top - 1, n] = rows[top + 1, n]
-            left, top_mm, right, bottom = _bounds(rows, count)
+def _wrapped(own, x, y):
+    """Place within a tile: constants origin, width and height."""
+    x, y = x - own[0], y - own[1]
+    x -= own[2] * math.floor(x / own[2])
+    y -= own[3] * math.floor(y / own[3])
+    # A quotient may be rounded up to the next tile.
+    return x if x >= 0.0 else x + own[2], y if y >= 0.0 else y + own[3]
 
 
 @compiled
-def _level(rows, top, level, count):
-    for n in range(count):
-        rows[top, n] = level
-
-
-@compiled
-def _scale(rows, top, factor, count):
-    for n in range(count):
-        rows[top, n] *= factor
-
-
-@compiled
-def _over(rows, top, mask, count):
-    """Lay the row ``top`` on the row beneath it: Lévesque 2009, eq. 8.22."""
-    for n in range(count):
-        value = rows[top, n] + (1.0 - rows[mask, n]) * rows[top - 1, n]
-        rows[top - 1, n] = value if value < 1.0 else 1.0
-
-
-@compiled
-def _wrap(numbers, rows, at, count):
-    """Wrap the places into a tile: constants origin, width and height."""
-    x0, y0, width, height = numbers[at], numbers[at + 1], numbers[at + 2], numbers[at + 3]
-    for n in range(count):
-        x, y = rows[i.X_ROW, n] - x0, rows[i.Y_ROW, n] - y0
-        x -= width * math.floor(x / width)
-        y -= height * math.floor(y / height)
-        # A quotient may be rounded up to the next tile.
-        rows[i.X_ROW, n] = x if x >= 0.0 else x + width
-        rows[i.Y_ROW, n] = y if y >= 0.0 else y + height
-
-
-@compiled
-def _shift(numbers, rows, at, time, count):
-    """Move the places: constants velocity, clock, and a centre's place.
+def _shifted(own, given, time, x, y):
+    """Place before a motion: constants velocity along x, clock, along y, clock, a centre's place.
 
     Lévesque 2009, eq. 9.1: δ(p - vt). Where a centre is given, places are taken as if the array's
     centre stood there, so that what moves does so under the finger, not by the hand.
     """
-    right = down = 0.0
-    passed = textures.passed_s(rows, numbers[at + 2], time)
-    if passed == passed:
-        right, down = -numbers[at] * passed, -numbers[at + 1] * passed
-    x, y = rows[i.GIVEN_ROW, i.CENTER_X], rows[i.GIVEN_ROW, i.CENTER_Y]
-    if numbers[at + 3] < _NO_PLACE and x == x:
-        right += numbers[at + 3] - x
-        down += numbers[at + 4] - y
-    for n in range(count):
-        rows[i.X_ROW, n] += right
-        rows[i.Y_ROW, n] += down
+    x -= moved(own, given, time)
+    y -= moved(own[2:], given, time)
+    if own[4] < _NO_PLACE and given[_CENTER_X] == given[_CENTER_X]:
+        x += own[4] - given[_CENTER_X]
+        y += own[5] - given[_CENTER_Y]
+    return x, y
 
 
 @compiled
-def _bounds(rows, count):
-    """Find the box of all places."""
-    left = right = rows[i.X_ROW, 0]
-    top = bottom = rows[i.Y_ROW, 0]
-    for n in range(1, count):
-        x, y = rows[i.X_ROW, n], rows[i.Y_ROW, n]
-        left, right = min(left, x), max(right, x)
-        top, bottom = min(top, y), max(bottom, y)
-    return left, top, right, bottom
+def _find_live(numbers, rows, gates, time, left, top, right, bottom):
+    """List the places of the instructions that matter within a box, and return how many."""
+    outer, given, width = rows[STACK_ROW], rows[GIVEN_ROW], rows.shape[1]
+    here, count, depth = CODE, 0, 0
+    while numbers[here] != END:
+        operation, own = int(numbers[here]), numbers[here + HEAD :]
+        length = int(numbers[here + 1])
+        if operation == GATE:
+            beside = own[0] > right or own[2] < left or own[1] > bottom or own[3] < top
+            if beside or gates & int(own[4]) != 0:
+                length += int(own[5])
+        else:
+            rows[LIVE_ROW + count // width, count % width] = here
+            count += 1
+        if operation in (WRAP, SHIFT):
+            outer[depth], outer[depth + 1], outer[depth + 2] = left, top, right
+            outer[depth + 3] = bottom
+            depth += 4
+            if operation == WRAP:
+                left, top, right, bottom = 0.0, 0.0, own[2], own[3]
+            else:
+                left, top = _shifted(own, given, time, left, top)
+                right, bottom = _shifted(own, given, time, right, bottom)
+        elif operation == RESTORE:
+            depth -= 4
+            left, top, right = outer[depth], outer[depth + 1], outer[depth + 2]
+            bottom = outer[depth + 3]
+        here += length
+    return count
+
+
+@compiled
+def _evaluate(numbers, table, rows, count, gates, time, left, top, right, bottom):
+    """Compute the deflections at ``count`` places, which are in the rows X and Y, on the stack.
+
+    The row of signs says which way each place swings, 1 or -1. Without a time, which is NaN then,
+    it has noise from -1 to 1 that stands for vibrations. The row `GIVEN_ROW` has the signals, by
+    which ``gates`` are shut. All places are in the box that is given last.
+    """
+    x, y, sign = rows[X_ROW], rows[Y_ROW], rows[SIGN_ROW]
+    across, along, place = rows[ACROSS_ROW], rows[ALONG_ROW], rows[PLACE_ROW]
+    inside, part, given = rows[INSIDE_ROW], rows[PART_ROW], rows[GIVEN_ROW]
+    width, above = rows.shape[1], STACK_ROW  # the row above the uppermost value
+    for k in range(_find_live(numbers, rows, gates, time, left, top, right, bottom)):
+        here = int(rows[LIVE_ROW + k // width, k % width])
+        operation, end = int(numbers[here]), here + int(numbers[here + 1])
+        own = numbers[here + HEAD :]
+        new, first, second, third = rows[above], rows[above - 1], rows[above - 2], rows[above - 3]
+        above += int(numbers[here + 2])
+        if operation == LEVEL:
+            level = own[0]
+            for n in range(count):
+                new[n] = level
+        elif operation == SIGNAL_VALUE:
+            level = given[int(own[0])]
+            for n in range(count):
+                new[n] = level
+        elif operation == INVERT:
+            for n in range(count):
+                first[n] = 1.0 - first[n]
+        elif operation == ADD:
+            for n in range(count):
+                second[n] = min(second[n] + first[n], 1.0)
+        elif operation == MAXIMUM:
+            for n in range(count):
+                second[n] = max(second[n], first[n])
+        elif operation == MULTIPLY:
+            for n in range(count):
+                second[n] *= first[n]
+        elif operation == OVER:
+            for n in range(count):
+                third[n] = min(second[n] + (1.0 - first[n]) * third[n], 1.0)
+        elif operation == OVER_ITSELF:
+            for n in range(count):
+                second[n] = min(first[n] + (1.0 - first[n]) * second[n], 1.0)
+        elif operation == BLEND:
+            for n in range(count):
+                third[n] += first[n] * (second[n] - third[n])
+        elif operation == VIBRATE:
+            amplitude, swing = own[1], phase(own[0], time)
+            for n in range(count):
+                first[n] *= swung(amplitude, swing * sign[n])
+        elif operation == LINEAR:
+            right_share, down_share, start = own[8], own[9], own[10]
+            for n in range(count):
+                new[n] = x[n] * right_share + y[n] * down_share - start
+            grating(own, new, count, given, time)
+        elif operation == RADIAL:
+            for n in range(count):
+                new[n] = math.sqrt((x[n] - own[8]) ** 2 + (y[n] - own[9]) ** 2)
+            grating(own, new, count, given, time)
+        elif operation == AXIAL:
+            axial(own, x, y, new, count, given, time)
+        elif operation == IMAGE:
+            for n in range(count):
+                new[n] = image(own, table, x[n], y[n])
+        elif operation == LABEL:
+            for n in range(count):
+                new[n] = highest_dot(own, table, x[n], y[n])
+        elif operation == LABEL_MASK:
+            for n in range(count):
+                new[n] = opacity(own, x[n], y[n])
+        elif operation == DOTS:
+            look, begin = numbers[int(own[0]) :], here + HEAD + 1
+            for n in range(count):
+                first[n] = dots(look, numbers, begin, end, x[n], y[n], sign[n], time, first[n])
+        elif operation == DOT_ROW:
+            look, row = numbers[int(own[0]) :], own[1:]
+            for n in range(count):
+                first[n] = dot_row(look, row, x[n], y[n], sign[n], given, time, first[n])
+        elif operation == CIRCLE:
+            circle(own, x, y, across, along, inside, count)
+        elif operation == PATH:
+            for n in range(count):
+                across[n], along[n], inside[n], part[n] = _FAR, 0.0, 0.0, own[0]
+        elif operation == SEGMENTS:
+            begin, size = here + HEAD + 1, int(own[0])
+            nearest(numbers, begin, end, size, x, y, across, along, part, count)
+        elif operation == CROSSINGS:
+            begin, size = int(own[0]), int(own[2])
+            crossed(numbers, begin, int(own[1]), size, x, y, inside, count)
+        elif operation == MEASURED:
+            for n in range(count):
+                across[n] = math.sqrt(across[n])
+            if own[0] != 0.0:
+                shift = moved(own[1:], given, time)
+                for n in range(count):
+                    segment = numbers[int(part[n]) :]
+                    place[n] = rounded(segment, x[n], y[n], along[n])
+                    along[n] = in_ridge(segment, place[n] - shift)
+        elif operation == INSIDE:
+            begins, slope = own[0], own[1]
+            for n in range(count):
+                new[n] = min(max((across[n] - begins) * slope, 0.0), 1.0) * inside[n]
+        elif operation == PROFILE:
+            profile(own, across, new, count)
+        elif operation == BANDS:
+            cycle, length, height, shift = own[2], own[3], own[4], moved(own, given, time)
+            places = place if own[5] != 0.0 else along
+            for n in range(count):
+                new[n] = height * ridge(places[n] - shift, cycle, length)
+        elif operation == MARKERS:
+            for n in range(count):
+                number = int(numbers[int(part[n]) + 12])
+                first[n] = markers(own, x[n], y[n], sign[n], time, number, first[n])
+        elif operation == BEYOND:
+            for n in range(count):
+                new[n] = beyond(numbers[int(part[n]) :], x[n], y[n], own[0])
+        elif operation == CUE:
+            # What of the bands is added, and what they hide: nothing for 0, the bands for 1, or as
+            # much of them as their vibration leaves for 2.
+            swing = phase(own[2], time)
+            for n in range(count):
+                left_over = swung(own[3], swing * sign[n]) * first[n]
+                new[n] = own[1] * first[n] if own[1] < 2.0 else left_over
+                first[n] = own[0] * left_over
+        elif operation in (WRAP, SHIFT):
+            newer = rows[above - 1]
+            for n in range(count):
+                new[n], newer[n] = x[n], y[n]
+                if operation == WRAP:
+                    x[n], y[n] = _wrapped(own, x[n], y[n])
+                else:
+                    x[n], y[n] = _shifted(own, given, time, x[n], y[n])
+        elif operation == RESTORE:
+            for n in range(count):
+                x[n], y[n], third[n] = third[n], second[n], first[n]
 
 
 _NAME = "vbraille_evaluate_scene"
-_I64, _F64 = ir.IntType(64), ir.DoubleType()
 _ANY = 1 << 40
-_SIGNATURE = types.void(
-    types.CPointer(types.float64),
-    types.CPointer(types.uint16),
-    types.CPointer(types.float64),
-    *(types.int64,) * 3,
-    *(types.float64,) * 5,
-)
+_POINTERS = types.CPointer(types.float64), types.CPointer(types.uint16)
+_SIGNATURE = types.void(*_POINTERS, _POINTERS[0], *(types.int64,) * 3, *(types.float64,) * 5)
 
 
 def _evaluate_plainly(numbers, table, rows, width, count, gates, time, left, top, right, bottom):
@@ -249,7 +315,7 @@ def _evaluate_plainly(numbers, table, rows, width, count, gates, time, left, top
     _evaluate(
         carray(numbers, (_ANY,)),
         carray(table, (_ANY,)),
-        carray(rows, (i.SCRATCH_ROWS, width)),
+        carray(rows, (LIVE_ROW, width)),
         count,
         gates,
         time,
@@ -260,28 +326,6 @@ def _evaluate_plainly(numbers, table, rows, width, count, gates, time, left, top
     )
 
 
-@intrinsic
-def _call(
-    _typing, _numbers, _table, _rows, _width, _count, _gates, _time, _left, _top, _right, _bottom
-):
-    """Call `_evaluate` by its name, with addresses of arrays."""
-
-    def code(context, builder, _signature, arguments):
-        doubles, words = _F64.as_pointer(), ir.IntType(16).as_pointer()
-        kinds = (doubles, words, doubles, *(_I64,) * 3, *(_F64,) * 5)
-        function = builder.module.globals.get(_NAME)
-        if function is None:
-            kind = ir.FunctionType(ir.VoidType(), kinds)
-            function = ir.Function(builder.module, kind, _NAME)
-        given = list(arguments)
-        for n in range(3):
-            given[n] = builder.inttoptr(given[n], kinds[n])
-        builder.call(function, given)
-        return context.get_dummy_value()
-
-    return types.void(*(types.int64,) * 6, *(types.float64,) * 5), code
-
-
 if config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
     evaluate = _evaluate  # pyright: ignore[reportAssignmentType]
 else:
@@ -290,95 +334,51 @@ else:
         _evaluate_plainly
     )
     binding.add_symbol(_NAME, _function.address)
+    _call = types.ExternalFunction(_NAME, _SIGNATURE)
 
     @compiled
     def evaluate(numbers, table, rows, count, gates, time, left, top, right, bottom):
         """Do as `_evaluate` does, which is not compiled into the caller."""
-        _call(  # pyright: ignore[reportCallIssue]
-            numbers.ctypes.data,
-            table.ctypes.data,
-            rows.ctypes.data,
-            rows.shape[1],
-            count,
-            gates,
-            time,
-            left,
-            top,
-            right,
-            bottom,
-        )
+        width, pointers = rows.shape[1], (numbers.ctypes, table.ctypes, rows.ctypes)
+        _call(*pointers, width, count, gates, time, left, top, right, bottom)
+
+
+@compiled
+def _bounds(rows, count):
+    """Find the box of all places."""
+    left, top, right, bottom = _FAR, _FAR, -_FAR, -_FAR
+    for n in range(count):
+        x, y = rows[X_ROW, n], rows[Y_ROW, n]
+        left, right = min(left, x), max(right, x)
+        top, bottom = min(top, y), max(bottom, y)
+    return left, top, right, bottom
 
 
 @compiled
 def show(numbers, table, rows, at, out):
-    """Fill a frame with the deflections of a scene at a pose and a time."""
+    """Fill a frame with the deflections of a scene, at the places that are in the rows X and Y."""
     above, across = out.shape
-    x, y = at[X] + numbers[i.ORIGIN_X], at[Y] + numbers[i.ORIGIN_Y]
-    cosine, sine = 1.0, 0.0
-    theta = at[THETA]
-    if theta != 0.0:
-        cosine, sine = math.cos(theta), math.sin(theta)
-    half_down = 0.5 * (above - 1) * numbers[i.ROW_MM]
-    half_aside = 0.5 * (across - 1) * numbers[i.COLUMN_MM]
-    wide = half_aside * abs(cosine) + half_down * abs(sine) + _ROUNDING_MM
-    high = half_down * abs(cosine) + half_aside * abs(sine) + _ROUNDING_MM
-    x0, x1, y0, y1 = x - wide, x + wide, y - high, y + high
-    right, bottom = numbers[i.RIGHT_MM], numbers[i.BOTTOM_MM]
+    count = above * across
+    left, top, right, bottom = _bounds(rows, count)
+    right_mm, bottom_mm = numbers[RIGHT_MM], numbers[BOTTOM_MM]
     # Written so that NaN is nowhere.
-    if not (x0 <= right and x1 >= 0.0 and y0 <= bottom and y1 >= 0.0):
-        for row in range(above):
-            for column in range(across):
-                out[row, column] = 0.0
-        return
-    for n in range(MOST_SIGNALS):
-        rows[i.GIVEN_ROW, n] = at[SIGNAL + n]
-    rows[i.GIVEN_ROW, i.CENTER_X], rows[i.GIVEN_ROW, i.CENTER_Y] = x, y
-    n = 0
-    for row in range(above):
-        down = (row - 0.5 * (above - 1)) * numbers[i.ROW_MM]
-        for column in range(across):
-            aside = (column - 0.5 * (across - 1)) * numbers[i.COLUMN_MM]
-            rows[i.X_ROW, n] = x + aside * cosine + down * sine
-            rows[i.Y_ROW, n] = y + down * cosine - aside * sine
-            rows[i.SIGN_ROW, n] = 1.0 - 2.0 * ((row + column) & 1)
-            n += 1
-    gates = shut_gates(numbers, rows[i.GIVEN_ROW])
-    evaluate(numbers, table, rows, n, gates, at[TIME], x0, y0, x1, y1)
-    whole = x0 >= 0.0 and x1 <= right and y0 >= 0.0 and y1 <= bottom
-    n = 0
-    for row in range(above):
-        for column in range(across):
-            value = rows[i.STACK, n]
-            if not whole:
-                px, py = rows[i.X_ROW, n], rows[i.Y_ROW, n]
-                value = value if 0.0 <= px <= right and 0.0 <= py <= bottom else 0.0
-            value = value if value > 0.0 else 0.0
-            out[row, column] = value if value < 1.0 else 1.0
-            n += 1
+    is_seen = left <= right_mm and right >= 0.0 and top <= bottom_mm and bottom >= 0.0
+    if is_seen:
+        for n in range(MOST_SIGNALS):
+            rows[GIVEN_ROW, n] = at[SIGNAL + n]
+        rows[GIVEN_ROW, _CENTER_X] = numbers[ORIGIN_X] + at[X]
+        rows[GIVEN_ROW, _CENTER_Y] = numbers[ORIGIN_Y] + at[Y]
+        gates = shut_gates(numbers, rows[GIVEN_ROW])
+        evaluate(numbers, table, rows, count, gates, at[TIME], left, top, right, bottom)
+    for n in range(count):
+        x, y = rows[X_ROW, n], rows[Y_ROW, n]
+        on_canvas = is_seen and 0.0 <= x <= right_mm and 0.0 <= y <= bottom_mm
+        value = min(max(rows[STACK_ROW, n], 0.0), 1.0)
+        out[n // across, n % across] = value if on_canvas else 0.0
 
 
-@compiled
-def show_all(numbers, table, rows, at, out):
-    """Fill a frame for each pose and time, of which each is a row of ``at``, in order of time.
-
-    Signals are computed, too. They begin as when the picture is first shown, unless the first row
-    has what they remember; without it the first number of that is NaN.
-    """
-    for n in range(out.shape[0]):
-        if numbers[i.SIGNALS] != 0.0:
-            if n:
-                # A slice given to a slice would be compiled with all words of its refusal.
-                for k in range(MEMORY, AT):
-                    at[n, k] = at[n - 1, k]
-                compute(numbers, at[n], max(at[n, TIME] - at[n - 1, TIME], 0.0))
-            elif at[0, MEMORY] != at[0, MEMORY]:
-                begin(numbers, at[0])
-                compute(numbers, at[0], 0.0)
-        show(numbers, table, rows, at[n], out[n])
-
-
-# Places of a raster that are computed together, so that their rows stay in the nearer caches.
-TILE_COLUMNS, TILE_LINES = 32, 16
+# Places of a raster that are computed together: what matters to none of them is not looked at.
+BLOCK_COLUMNS, BLOCK_LINES = 32, 16
 
 
 @compiled
@@ -389,7 +389,7 @@ def raster(numbers, table, rows, x_mm, y_mm, sign, noise, time, out):
     ----------
     numbers, table
         The program.
-    rows : float64[SCRATCH_ROWS, TILE_COLUMNS · TILE_LINES]
+    rows : float64[SCRATCH_ROWS, n]
         Room to work in, with the values of the signals.
     x_mm, y_mm : float64[w], float64[h]
         Places of the raster's columns and lines.
@@ -402,24 +402,20 @@ def raster(numbers, table, rows, x_mm, y_mm, sign, noise, time, out):
     out : float32[h, w]
         Deflections.
     """
-    right, bottom = numbers[i.RIGHT_MM], numbers[i.BOTTOM_MM]
-    gates = shut_gates(numbers, rows[i.GIVEN_ROW])
-    for first in range(0, y_mm.size, TILE_LINES):
-        last = min(first + TILE_LINES, y_mm.size)
-        for begins in range(0, x_mm.size, TILE_COLUMNS):
-            ends = min(begins + TILE_COLUMNS, x_mm.size)
-            n = 0
-            for line in range(first, last):
-                for column in range(begins, ends):
-                    rows[i.X_ROW, n], rows[i.Y_ROW, n] = x_mm[column], y_mm[line]
-                    rows[i.SIGN_ROW, n] = noise[line, column] if noise.size else sign
-                    n += 1
-            x0, y0, x1, y1 = _bounds(rows, n)
-            evaluate(numbers, table, rows, n, gates, time, x0, y0, x1, y1)
-            n = 0
-            for line in range(first, last):
-                for column in range(begins, ends):
-                    x, y = x_mm[column], y_mm[line]
-                    value = min(max(rows[i.STACK, n], 0.0), 1.0)
-                    out[line, column] = value if 0 <= x <= right and 0 <= y <= bottom else 0.0
-                    n += 1
+    right, bottom = numbers[RIGHT_MM], numbers[BOTTOM_MM]
+    gates = shut_gates(numbers, rows[GIVEN_ROW])
+    for first in range(0, y_mm.size, BLOCK_LINES):
+        lines = min(BLOCK_LINES, y_mm.size - first)
+        for begin in range(0, x_mm.size, BLOCK_COLUMNS):
+            columns = min(BLOCK_COLUMNS, x_mm.size - begin)
+            for n in range(lines * columns):
+                line, column = first + n // columns, begin + n % columns
+                rows[X_ROW, n], rows[Y_ROW, n] = x_mm[column], y_mm[line]
+                rows[SIGN_ROW, n] = noise[line, column] if noise.size else sign
+            x0, y0, x1, y1 = _bounds(rows, lines * columns)
+            evaluate(numbers, table, rows, lines * columns, gates, time, x0, y0, x1, y1)
+            for n in range(lines * columns):
+                x, y = rows[X_ROW, n], rows[Y_ROW, n]
+                value = min(max(rows[STACK_ROW, n], 0.0), 1.0)
+                value = value if 0 <= x <= right and 0 <= y <= bottom else 0.0
+                out[first + n // columns, begin + n % columns] = value

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import msgspec
 
 from vbraille.errors import InputError
-from vbraille.render.labels import Assets, Written, box_of
+from vbraille.render.labels import Assets, Written
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.patterns import Fill, Group, Image, Label, Polygon, Uniform
 from vbraille.scene.scene import Canvas, Scene
@@ -41,46 +41,6 @@ class FigureAt(NamedTuple):
     assets: Assets
 
 
-def page_with_figure(
-    lines: Sequence[NDArray[np.uint8]],
-    style: BrailleStyle,
-    figure: Scene,
-    place_mm: Point,
-    assets: Assets | None = None,
-) -> tuple[Scene, Assets]:
-    """Make one picture of a page of braille and a figure that stands on it.
-
-    The page's canvas is that of `BrailleStyle.render_page`: line n takes y from n to n + 1 line
-    pitches, with its dots around the middle, and each actuator shows what lies under it. The
-    figure hides what it stands on as far as its elements do, so lines leave room for it; nothing
-    of it is felt beyond the rectangle of its canvas.
-
-    Parameters
-    ----------
-    lines : sequence of uint8[cells]
-        Dot masks of each line of the page; those that the figure stands on are empty, or short.
-    style
-        Distances, profile and tuning of the dots.
-    figure
-        The figure, a resolved scene.
-    place_mm
-        Where its canvas has its top left corner on the page.
-    assets
-        What the figure takes from elsewhere; None for nothing.
-
-    Returns
-    -------
-    Scene, Assets
-        The picture, and what it takes from elsewhere.
-
-    Raises
-    ------
-    InputError
-        If the page has no cells, or the figure would be farther than 10 m from the page's corner.
-    """
-    return page_with_figures(lines, style, (FigureAt(figure, place_mm, assets or Assets()),))
-
-
 def page_with_figures(
     lines: Sequence[NDArray[np.uint8]],
     style: BrailleStyle,
@@ -88,12 +48,19 @@ def page_with_figures(
     *,
     start_mm: float = 0.0,
 ) -> tuple[Scene, Assets]:
-    """Make one picture of a page of braille and the figures on it; see `page_with_figure`.
+    """Make one picture of a page of braille and the figures that stand on it.
+
+    The page's canvas is that of `BrailleStyle.render_page`: line n takes y from n to n + 1 line
+    pitches, with its dots around the middle, and each actuator shows what lies under it. A figure
+    hides what it stands on as far as its elements do, so lines leave room for it; nothing of it is
+    felt beyond the rectangle of its canvas.
 
     Parameters
     ----------
-    lines, style
-        As for `page_with_figure`.
+    lines : sequence of uint8[cells]
+        Dot masks of each line of the page; those that a figure stands on are empty, or short.
+    style
+        Distances, profile and tuning of the dots.
     figures
         Figures with their places, one at least.
     start_mm
@@ -107,7 +74,7 @@ def page_with_figures(
     Raises
     ------
     InputError
-        As for `page_with_figure`.
+        If the page has no cells, or a figure would be farther than 10 m from the page's corner.
     """
     cells = max((len(masks) for masks in lines), default=0)
     if cells == 0:
@@ -160,15 +127,7 @@ def _figure(figure: Scene, parts: tuple[AnyPattern, ...], place_mm: Point, asset
         operation=figure.operation,
         parts=parts,
     )
-    known: dict[Image | Label, Box] = {
-        label: box_of(label, written) for label, written in assets.written.items()
-    }
-    for image, bitmap in assets.bitmaps.items():
-        if bitmap.outside == 0.0:
-            x_mm, y_mm = bitmap.place_mm
-            box = Box(x_mm, y_mm, x_mm + bitmap.width_mm, y_mm + bitmap.height_mm)
-            known[image] = box.grown(_EDGE_MM)
-    reach = bounds(whole, known)
+    reach = bounds(whole, assets.boxes())
     if reach is not None and Box(left, top, right, bottom).joined(reach) == (
         left,
         top,

@@ -1,168 +1,57 @@
 """The compiled inner loops of rendering.
 
-Kernels fill ``out`` and allocate nothing, but for one frame in `poses`.
-`vbraille.render.braille.style` compiles what they need into two arrays, ``numbers`` and ``table``
-(see `vbraille.render.work`), and `vbraille.render.braille.reference` has the same functions in
-plain numpy.
-
-``scratch`` is float64[3, n]: room for the swing under each column of a block of positions, and for
-the slot that each is over; for scenes, too, it has more rows. A slot is one dot column of one cell:
-2 (cell + 1) + (0 left, 1 right), with an empty cell before a line's first and one after its last.
-The table has a word for each slot of each line, whose bit r is set if actuator row r shows a dot
-there; a page has an empty line before its first and one after its last. Where each actuator shows
-what lies freely under it, bit r stands for row r of the dots instead.
-
-The loops over a block are flat and without calls, so that they become vector instructions: hence
-the polynomials of `vbraille.render.waves` instead of the library's sine.
+Kernels fill ``out`` and allocate nothing. A program is the two arrays
+``numbers`` and ``table`` (see `vbraille.render.work`), of which the tests have a twin in plain
+numpy; ``scratch`` is its `vbraille.render.program.Program.scratch`.
 """
 
 import math
 
-import numpy as np
-
-from vbraille.render.cellkernels import label as _label
-from vbraille.render.evaluating import show as _show_scene
-from vbraille.render.evaluating import show_all as _show_scenes
+from vbraille.render.cellkernels import BEFORE, ONLY, find_dots, highest_dot
+from vbraille.render.evaluating import show
 from vbraille.render.frames import copy
-from vbraille.render.waves import HALF_SINE
+from vbraille.render.signalkernels import begin, compute
 from vbraille.render.waves import compiled as _compiled
-from vbraille.render.waves import dot_swing as _dot_swing
-from vbraille.render.waves import inlined as _inlined
+from vbraille.render.waves import phase, swung
 from vbraille.render.work import (
     AMPLITUDE,
-    ANCHOR,
-    CELL_PITCH,
-    CELLS_PER_MM,
+    APART,
+    AT,
+    CELL_NUMBERS,
+    CELLS,
+    CENTER,
     COLUMN_PITCH,
     COLUMNS,
-    DOT_SPACING,
-    DOTS_PER_MM,
     FREE,
     FREQUENCY,
     HYSTERESIS,
-    IDLE,
     KIND,
     LINE_PITCH,
     LINES,
+    MEMORY,
     NO_PART,
-    OVERLAP,
+    ORIGIN_X,
+    ORIGIN_Y,
     PATIENCE_S,
-    PROFILE,
     ROW_PITCH,
     ROWS,
-    SHAPE,
+    SIGN_ROW,
     SLOT,
     SLOTS,
     SWING,
     THETA,
     TILT,
     TIME,
+    X_ROW,
+    Y_ROW,
     X,
     Y,
 )
 
-VIBRATION, SCENE = 2.0, 3.0  # of `ProgramKind`; the other kinds are braille
-_PAGE = 1.0
-_DOT_ROWS = 4
+_PAGE, _VIBRATION, SCENE = 1.0, 2.0, 3.0  # of `ProgramKind`
+_IDLE = CELLS + CELL_NUMBERS
 # An array that was turned too far shows braille again once it is upright by so much more.
 _UPRIGHT = 0.85
-
-
-@_compiled
-def _swings(numbers, scratch, count, which):
-    """Replace the places on the surface in ``scratch[SWING]`` by the swings there; fill the slots.
-
-    ``which`` names the dot column of the cell: 0 the left one, 1 the right one, 2 the right one of
-    the cell before, 3 the only one that can be there.
-    """
-    cells = int(numbers[SLOTS]) // 2 - 2
-    cells_per_mm = numbers[CELLS_PER_MM]
-    pitch = numbers[CELL_PITCH]
-    spacing = numbers[DOT_SPACING]
-    dots_per_mm = numbers[DOTS_PER_MM]
-    e0, e1, e2 = numbers[SHAPE], numbers[SHAPE + 1], numbers[SHAPE + 2]
-    e3, e4, e5 = numbers[SHAPE + 3], numbers[SHAPE + 4], numbers[SHAPE + 5]
-    half_sine = numbers[PROFILE] == HALF_SINE
-    before = 1.0 if which == 2 else 0.0
-    is_right = 1.0 if which in (1, 2) else 0.0
-    choose = which == 3
-    for n in range(count):
-        u = scratch[SWING, n]
-        # Written so that a NaN, too, goes to the empty cell before the line.
-        cell = u * cells_per_mm
-        cell = cell if cell > -1.0 else -1.0
-        cell = math.floor(cell if cell < cells else cells)
-        t = u - cell * pitch
-        right = (1.0 if t >= spacing else 0.0) if choose else is_right
-        d = (t - spacing * right + pitch * before) * dots_per_mm - 0.5
-        q = d * d
-        q = q if q < 0.25 else 0.25
-        d = d if d < 0.5 else 0.5
-        d = d if d > -0.5 else -0.5
-        value = _dot_swing(half_sine, e0, e1, e2, e3, e4, e5, d, q)
-        scratch[SWING, n] = value if q < 0.25 else 0.0
-        slot = 2.0 * (cell + 1.0 - before) + right
-        scratch[SLOT, n] = slot if slot > 0.0 else 0.0
-
-
-@_inlined
-def _places(scratch, left_mm, first, columns, pitch):
-    """Fill in where on the surface each column is (eq. 3.1: all columns sample one surface)."""
-    for column in range(columns):
-        scratch[SWING, first + column] = left_mm + column * pitch
-
-
-@_compiled
-def _write(numbers, table, base, scratch, first, out, above, below):
-    """Fill rows of a frame with the swings of a block."""
-    rows, columns = out.shape
-    for row in range(above, below):
-        idle = numbers[IDLE + row]
-        gain = numbers[IDLE + rows + row]
-        for column in range(columns):
-            shown = table[base + int(scratch[SLOT, first + column])] >> row & 1
-            out[row, column] = idle + gain * shown * scratch[SWING, first + column]
-
-
-@_compiled
-def _write_larger(numbers, table, base, scratch, first, out, above, below):
-    """Fill rows of a frame where dots overlap, with the larger of their swings."""
-    rows, columns = out.shape
-    for row in range(above, below):
-        idle = numbers[IDLE + row]
-        gain = numbers[IDLE + rows + row]
-        for column in range(columns):
-            shown = table[base + int(scratch[SLOT, first + column])] >> row & 1
-            swing = gain * shown * scratch[SWING, first + column]
-            if abs(swing) > abs(out[row, column] - idle):
-                out[row, column] = idle + swing
-
-
-@_compiled
-def _rows(numbers, table, base, scratch, left_mm, pitch, out, above, below):
-    """Fill rows of a frame, all of which have their left columns at the same place."""
-    columns = out.shape[1]
-    _places(scratch, left_mm, 0, columns, pitch)
-    if numbers[OVERLAP] == 0.0:
-        _swings(numbers, scratch, columns, 3)
-        _write(numbers, table, base, scratch, 0, out, above, below)
-        return
-    _swings(numbers, scratch, columns, 0)
-    _write(numbers, table, base, scratch, 0, out, above, below)
-    for which in range(1, 3):
-        _places(scratch, left_mm, 0, columns, pitch)
-        _swings(numbers, scratch, columns, which)
-        _write_larger(numbers, table, base, scratch, 0, out, above, below)
-
-
-@_inlined
-def _base(numbers, part):
-    """Tell where in the table the slots of a part begin; a part that is no line has empty slots."""
-    if numbers[KIND] != _PAGE:
-        return 0
-    lines = int(numbers[LINES])
-    line = part if -1 <= part <= lines else -1
-    return (line + 1) * int(numbers[SLOTS])
 
 
 @_compiled
@@ -175,10 +64,10 @@ def part_of(numbers, y_mm, before):
     """
     if numbers[KIND] != _PAGE:
         return 0
-    at = y_mm / numbers[LINE_PITCH]
+    at = y_mm / numbers[CELLS + LINE_PITCH]
     if before != NO_PART and abs(at - before - 0.5) <= 0.5 + numbers[HYSTERESIS] / 2:
         return before
-    lines = numbers[LINES]
+    lines = numbers[CELLS + LINES]
     at = at if at > -1.0 else -1.0  # NaN, too, gives this place
     return math.floor(at if at < lines else lines)
 
@@ -206,65 +95,67 @@ def too_far(numbers, theta, before):
 
 
 @_compiled
-def _free(numbers, table, scratch, at, out):
-    """Fill a frame with what lies under each actuator: the dots of a page are round there.
+def _write(numbers, table, part, scratch, first, step, out, which):
+    """Fill a frame with the swings of a line's dots, or with those that are larger.
 
-    Lévesque 2009, eq. 6.1 and 8.3.1, with the profile of a line's dots for that of a dot.
+    Row r has the places from first + r · step on. A part that is no line has empty slots.
     """
     rows, columns = out.shape
-    cosine, sine = math.cos(at[THETA]), math.sin(at[THETA])
-    n = 0
+    is_first = which in (BEFORE, ONLY)
+    line = part if -1 <= part <= numbers[CELLS + LINES] else -1
+    base = (line + 1) * int(numbers[CELLS + SLOTS])
     for row in range(rows):
-        down = (row - 0.5 * (rows - 1)) * numbers[ROW_PITCH]
+        idle, gain = numbers[_IDLE + row], numbers[_IDLE + rows + row]
         for column in range(columns):
-            right = column * numbers[COLUMN_PITCH] - numbers[ANCHOR]
-            scratch[0, n] = at[X] + right * cosine + down * sine
-            scratch[1, n] = at[Y] + down * cosine - right * sine
-            n += 1
-    _label(numbers, IDLE + 2 * rows, table, scratch[0], scratch[1], n, scratch[2])
-    n = 0
-    for row in range(rows):
-        for column in range(columns):
-            out[row, column] = scratch[2, n]
-            n += 1
+            n = first + row * step + column
+            shown = table[base + int(scratch[SLOT, n])] >> row & 1
+            swing = gain * shown * scratch[SWING, n]
+            if is_first or abs(swing) > abs(out[row, column] - idle):
+                out[row, column] = idle + swing
+
+
+@_compiled
+def _columns_of_dots(numbers):
+    """Tell which columns of dots are looked at."""
+    if numbers[CELLS + APART] != 0.0:
+        return range(ONLY, ONLY + 1)
+    return range(BEFORE, ONLY)
 
 
 @_compiled
 def frame(numbers, table, scratch, part, at, out):
     """Fill one frame, float[rows, columns], of a part of a picture.
 
-    ``at`` is what it is evaluated at, float64[6]: pose, time and velocity, by `work`.
+    ``at`` is what it is evaluated at, float64[AT] by `work`: pose, time, velocity and signals.
     """
     rows, columns = out.shape
     # Compiled code would otherwise read beyond the numbers.
     if rows != numbers[ROWS] or columns != numbers[COLUMNS]:
         raise ValueError("the frame has not the shape of the array")
-    if numbers[KIND] == VIBRATION:
-        # Lévesque 2009, eqs. 8.1 and 8.2: neighbours swing against each other.
-        phase = math.sin(2.0 * math.pi * numbers[FREQUENCY] * at[TIME])
-        for row in range(rows):
-            for column in range(columns):
-                sign = 1.0 - 2.0 * ((row + column) & 1)
-                out[row, column] = numbers[AMPLITUDE] * (0.5 + 0.5 * sign * phase)
-        return
-    if numbers[KIND] == SCENE:
-        _show_scene(numbers, table, scratch, at, out)
-        return
-    if numbers[FREE] != 0.0:
-        _free(numbers, table, scratch, at, out)
-        return
-    base = _base(numbers, part)
-    theta = at[THETA]
-    if theta == 0.0:
-        left_mm = at[X] - numbers[ANCHOR]
-        _rows(numbers, table, base, scratch, left_mm, numbers[COLUMN_PITCH], out, 0, rows)
-        return
-    cosine, sine = math.cos(theta), math.sin(theta)
+    kind, amplitude = numbers[KIND], numbers[AMPLITUDE]
+    x0, y0 = numbers[ORIGIN_X] + at[X], numbers[ORIGIN_Y] + at[Y]
+    cosine, sine = math.cos(at[THETA]), math.sin(at[THETA])
+    pitch, row_pitch, center = numbers[COLUMN_PITCH], numbers[ROW_PITCH], numbers[CENTER]
+    swing = phase(numbers[FREQUENCY], at[TIME])
+    n = 0
     for row in range(rows):
-        down_mm = (row - 0.5 * (rows - 1)) * numbers[ROW_PITCH]
-        left_mm = at[X] - numbers[ANCHOR] * cosine + down_mm * sine
-        pitch = numbers[COLUMN_PITCH] * cosine
-        _rows(numbers, table, base, scratch, left_mm, pitch, out, row, row + 1)
+        down = (row - 0.5 * (rows - 1)) * row_pitch
+        for column in range(columns):
+            right = (column - 0.5 * (columns - 1)) * pitch + center
+            x, y = x0 + right * cosine + down * sine, y0 + down * cosine - right * sine
+            sign = 1.0 - 2.0 * ((row + column) & 1)
+            scratch[X_ROW, n], scratch[Y_ROW, n], scratch[SIGN_ROW, n] = x, y, sign
+            n += 1
+            if kind == _VIBRATION:
+                out[row, column] = amplitude * swung(1.0, sign * swing)
+            elif kind == _PAGE and numbers[FREE] != 0.0:
+                out[row, column] = highest_dot(numbers[CELLS:], table, x, y)
+    if kind == SCENE:
+        show(numbers, table, scratch, at, out)
+    elif kind != _VIBRATION and not seamless(numbers):
+        for which in _columns_of_dots(numbers):
+            find_dots(numbers[CELLS:], scratch, n, which)
+            _write(numbers, table, part, scratch, 0, columns, out, which)
 
 
 @_compiled
@@ -277,43 +168,40 @@ def path(numbers, table, scratch, x_mm, out):
     rows, columns = out.shape[1:]
     if rows != numbers[ROWS] or columns != numbers[COLUMNS]:
         raise ValueError("the frames have not the shape of the array")
-    pitch = numbers[COLUMN_PITCH]
-    if numbers[OVERLAP] != 0.0:
-        for n in range(x_mm.size):
-            left_mm = x_mm[n] - numbers[ANCHOR]
-            _rows(numbers, table, 0, scratch, left_mm, pitch, out[n], 0, rows)
-        return
     block = scratch.shape[1] // columns
     for first in range(0, x_mm.size, block):
         count = min(block, x_mm.size - first)
         for n in range(count):
-            left_mm = x_mm[first + n] - numbers[ANCHOR]
-            _places(scratch, left_mm, n * columns, columns, pitch)
-        _swings(numbers, scratch, count * columns, 3)
-        for n in range(count):
-            _write(numbers, table, 0, scratch, n * columns, out[first + n], 0, rows)
+            middle_mm = x_mm[first + n] + numbers[CENTER]
+            for column in range(columns):
+                right = (column - 0.5 * (columns - 1)) * numbers[COLUMN_PITCH]
+                scratch[X_ROW, n * columns + column] = middle_mm + right
+        for which in _columns_of_dots(numbers):
+            find_dots(numbers[CELLS:], scratch, count * columns, which)
+            for n in range(count):
+                _write(numbers, table, 0, scratch, n * columns, 0, out[first + n], which)
 
 
 @_compiled
-def poses(numbers, table, scratch, at, parts, out):
+def poses(numbers, table, scratch, at, made, parts, out):
     """Fill a frame for each pose over a picture, and the part that belongs under the array there.
 
-    ``at`` is float64[n, 6], each row as `frame` takes it; ``parts``, int64[n], and ``out``,
-    float[n, rows, columns], are filled. An array that is turned too far is at rest.
+    ``at`` is float64[n, AT], each row as `frame` takes it, in order of time; ``parts``, int64[n],
+    and ``out``, float[n, rows, columns], are filled. An array that is turned too far is at rest.
+    Signals are computed, too: they begin as when the picture is first shown, unless the first row
+    has what they remember; without it the first number of that is NaN. In ``made``, float64[rows,
+    columns], frames are made as ticks make them, so that `frame` is compiled once.
     """
-    if numbers[KIND] == SCENE:
-        if out.shape[1] != numbers[ROWS] or out.shape[2] != numbers[COLUMNS]:
-            raise ValueError("the frames have not the shape of the array")
-        # It has one part, and is shown at any angle.
-        for n in range(parts.size):
-            parts[n] = 0
-        _show_scenes(numbers, table, scratch, at, out)
-        return
-    # Made as ticks make them, so that `frame` is compiled once.
-    made = np.zeros(out.shape[1:])
     part = NO_PART
     turned = False
     for n in range(at.shape[0]):
+        if numbers[KIND] == SCENE and n > 0:
+            for k in range(MEMORY, AT):
+                at[n, k] = at[n - 1, k]
+            compute(numbers, at[n], max(at[n, TIME] - at[n - 1, TIME], 0.0))
+        elif numbers[KIND] == SCENE and math.isnan(at[0, MEMORY]):
+            begin(numbers, at[0])
+            compute(numbers, at[0], 0.0)
         part = part_of(numbers, at[n, Y], part)
         parts[n] = part
         turned = too_far(numbers, at[n, THETA], turned)

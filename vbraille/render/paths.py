@@ -1,25 +1,17 @@
-"""Numbers of the paths of shapes for the kernels: segments with their corners, and dots.
+"""Numbers of the paths of shapes for the kernels: segments with their corners, and rows of dots.
 
-`vbraille.render.instructions` has the order of their numbers.
+`vbraille.render.patternkernels` has the order of their numbers.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from vbraille.render.instructions import (
-    ACROSS,
-    CHUNK,
-    CORNER_NUMBERS,
-    DOWN,
-    LENGTH,
-    RIGHT,
-    ROUNDED,
-)
-from vbraille.scene.bounds import around, drawn_radius_mm
-from vbraille.scene.dotting import dots_of, rows_of
+from vbraille.render.patternkernels import CORNER_NUMBERS
+from vbraille.scene.bounds import drawn_radius_mm
+from vbraille.scene.dotting import rows_of
 from vbraille.scene.joints import (
     joints,
     marker_half_angle_rad,
@@ -30,25 +22,16 @@ from vbraille.scene.joints import (
 from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
-    from vbraille.scene.dotting import DotRow, PlacedDot
-    from vbraille.scene.joints import Cycle, Joint
+    from vbraille.scene.dotting import DotRow
+    from vbraille.scene.joints import Joint
     from vbraille.scene.measures import Point
 
 AnyShape = StraightLine | Circle | Polygon | PathShape
 Numbers = tuple[float, ...]
-_OPEN = -1e30  # stands for minus infinity
-_NO_CORNER = (_OPEN, *(0.0,) * (CORNER_NUMBERS - 1))
-
-
-def contours_of(shape: AnyShape) -> tuple[tuple[tuple[Point, ...], ...], bool]:
-    """Contours of a shape, and whether they are closed; a circle has none."""
-    if isinstance(shape, StraightLine):
-        return ((shape.start_mm, shape.end_mm),), False
-    if isinstance(shape, Polygon):
-        return (shape.vertices_mm,), True
-    return (shape.contours_mm, shape.closed) if isinstance(shape, PathShape) else ((), True)
+_FAR = 1e30  # stands for infinity
+_NO_CORNER = (-_FAR, *(0.0,) * (CORNER_NUMBERS - 1))
 
 
 def is_open(shape: AnyShape) -> bool:
@@ -58,85 +41,56 @@ def is_open(shape: AnyShape) -> bool:
 
 def cycles_differ(shape: AnyShape) -> bool:
     """Tell whether textures along the contours of a shape have cycles of their own."""
-    cycles = stroke_cycles(shape)
-    return any(cycle != cycles[0] for cycle in cycles[1:])
+    return len(set(stroke_cycles(shape))) > 1
 
 
-def path_chunks(shape: AnyShape, size: int) -> list[float]:
-    """Numbers of the segments of a shape, in chunks with their boxes, after the number of these.
-
-    Parameters
-    ----------
-    shape
-        The shape, no circle.
-    size
-        Numbers of each segment: `ACROSS`, `ALONG` or `ROUNDED` of the instructions.
-    """
-    contours, closed = contours_of(shape)
+def segments_of(shape: StraightLine | Polygon | PathShape, *, rounded: bool) -> Iterator[Numbers]:
+    """Numbers of the segments of a shape, with those of their corners if these are rounded."""
+    contours: tuple[tuple[Point, ...], ...]
+    if isinstance(shape, PathShape):
+        contours = shape.contours_mm
+    else:
+        line = isinstance(shape, StraightLine)
+        contours = ((shape.start_mm, shape.end_mm) if line else shape.vertices_mm,)
     cycles = stroke_cycles(shape) if cycles_differ(shape) else ()
-    found: list[tuple[Point, Point, Numbers]] = []
+    corners: list[tuple[Numbers, float]] = []
+    if rounded and isinstance(shape, Polygon) and shape.join == "rounded":
+        middles = places_along_mm(shape)
+        found = joints(shape.vertices_mm, rounding_radius_mm(shape))
+        for corner, middle_mm in zip((*found, found[0]), middles, strict=True):
+            begin_mm = middle_mm + corner.arc_mm / 2 - corner.reach_mm
+            corners.append((_corner(corner, middle_mm), begin_mm))
     for number, points in enumerate(contours):
-        pairs = _pairs(points, closed)
-        if size == ACROSS:
-            segments = [_segment(*pair) for pair in pairs]
-        else:
-            cycle = cycles[number] if cycles else None
-            segments = [one[:size] for one in _segments_along(shape, points, closed, cycle, size)]
-        found += [(*pair, one) for pair, one in zip(pairs, segments, strict=True)]
-    numbers: list[float] = [-(-len(found) // CHUNK)]
-    for first in range(0, len(found), CHUNK):
-        some = found[first : first + CHUNK]
-        numbers += around(place for start, end, _ in some for place in (start, end))
-        numbers.append(len(some))
-        for _, _, segment in some:
-            numbers += segment
-    return numbers
+        texture = (cycles[number].ridge, cycles[number].length) if cycles else (0.0, 0.0)
+        straight = list(itertools.starmap(_straight, itertools.pairwise(points)))
+        if not is_open(shape):
+            straight.append(_straight(points[-1], points[0]))
+        count = len(straight)
+        begin_mm = 0.0
+        for i, segment in enumerate(straight):
+            half, end_half = (0.0, 0.0), (0.0, 0.0, -_FAR)
+            if i > 0 or not is_open(shape):
+                half = _half(straight[i - 1], segment)
+            if i < count - 1 or not is_open(shape):
+                end_half = (*_half(segment, straight[(i + 1) % count]), 0.0)
+            start, end = _NO_CORNER, _NO_CORNER
+            own_mm = begin_mm
+            if corners:
+                (start, own_mm), (end, _) = corners[i : i + 2]
+            ends = (*start, *end) if rounded else ()
+            yield (*segment, *half, *end_half, own_mm, float(i), *texture, *ends)
+            begin_mm += segment[4]
 
 
-def _pairs(points: Sequence[Point], closed: bool) -> list[tuple[Point, Point]]:
-    ends = [*points[1:], points[0]] if closed else points[1:]
-    return list(zip(points, ends, strict=False))
-
-
-def _segment(start: Point, end: Point) -> Numbers:
+def _straight(start: Point, end: Point) -> Numbers:
+    """Start, direction and length of a segment, and y of its end."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     length = math.hypot(dx, dy)
     return (*start, dx / length, dy / length, length, end[1])
 
 
-def _segments_along(
-    shape: AnyShape, points: Sequence[Point], closed: bool, cycle: Cycle | None, size: int
-) -> Iterator[Numbers]:
-    """Numbers of segments with all that tells places along them."""
-    straight = [_segment(*pair) for pair in _pairs(points, closed)]
-    count = len(straight)
-    texture = (0.0, 0.0, 0.0)
-    if cycle is not None:
-        assert shape.stroke is not None
-        assert shape.stroke.along is not None
-        texture = (cycle.ridge, cycle.length, shape.stroke.along.velocity_mm_s)
-    corners: Sequence[Joint] = ()
-    middles: Sequence[float] = ()
-    if size == ROUNDED and isinstance(shape, Polygon) and shape.join == "rounded":
-        corners = joints(points, rounding_radius_mm(shape))
-        middles = places_along_mm(shape)
-    begin = 0.0
-    for i, segment in enumerate(straight):
-        before, after = straight[i - 1], straight[(i + 1) % count]
-        half = _half(before, segment) if closed or i > 0 else (0.0, 0.0)
-        is_last = not closed and i == count - 1
-        end_half = (0.0, 0.0, _OPEN) if is_last else (*_half(segment, after), 0.0)
-        start, end, own = _NO_CORNER, _NO_CORNER, begin
-        if corners:
-            here, there = corners[i], corners[(i + 1) % count]
-            start, end = _corner(here, middles[i]), _corner(there, middles[i + 1])
-            own = middles[i] + here.arc_mm / 2 - here.reach_mm
-        yield (*segment, *half, *end_half, own, float(i), *texture, *start, *end)
-        begin += segment[LENGTH]
-
-
 def _half(before: Numbers, after: Numbers) -> tuple[float, float]:
-    return before[RIGHT] + after[RIGHT], before[DOWN] + after[DOWN]
+    return before[2] + after[2], before[3] + after[3]
 
 
 def _corner(corner: Joint, middle_mm: float) -> Numbers:
@@ -158,81 +112,73 @@ def marker_numbers(polygon: Polygon) -> list[float]:
     return numbers
 
 
-def dot_chunks(dots: Sequence[PlacedDot]) -> list[float]:
-    """Numbers of dots that stay, in chunks with their boxes, after the number of these."""
-    numbers: list[float] = [-(-len(dots) // CHUNK)]
-    for first in range(0, len(dots), CHUNK):
-        some = dots[first : first + CHUNK]
-        numbers += around((dot.x_mm, dot.y_mm) for dot in some)
-        numbers.append(len(some))
-        for dot in some:
-            numbers += (dot.x_mm, dot.y_mm, float(dot.vertex))
-    return numbers
+class _RowOnSegment(NamedTuple):
+    """Numbers of a row of dots along a segment or around a circle."""
+
+    x_mm: float
+    y_mm: float
+    right: float = 0.0
+    down: float = 0.0
+    length_mm: float = 0.0
+    radius_mm: float = 0.0
+    at_mm: float = 0.0
+    pitch_mm: float = 0.0
+    low_mm: float = -_FAR
+    high_mm: float = _FAR
+    begin_mm: float = -_FAR
+    begin_along: float = 0.0
+    begin_across: float = 0.0
+    end_mm: float = _FAR
+    end_along: float = 0.0
+    end_across: float = 0.0
+    is_cut_before: float = 0.0
+    is_cut_after: float = 0.0
 
 
-def dotted_numbers(shape: AnyShape) -> list[float]:
-    """Numbers of the dots along a shape, after the number of chunks or of rows."""
-    assert shape.dots is not None
-    if not shape.dots.velocity_mm_s:
-        return dot_chunks(dots_of(shape))
-    stay, rows = rows_of(shape)
-    there = (0.0, -_OPEN, 0.0)  # length, pitch, motion
-    found = [_row_numbers((dot[:2], (1.0, 0.0), *there), vertex=float(dot.vertex)) for dot in stay]
-    for row in rows:
+def moving_rows(shape: AnyShape) -> Iterator[Numbers]:
+    """Numbers of the rows of dots that move along a shape."""
+    for row in rows_of(shape)[1]:
         if isinstance(shape, Circle):
-            place = (shape.center_mm, (1.0, 0.0), 0.0, row.pitch_mm, 1.0)
-            found.append(_row_numbers(place, radius=shape.radius_mm))
+            radius_mm = shape.radius_mm
+            yield _RowOnSegment(*shape.center_mm, radius_mm=radius_mm, pitch_mm=row.pitch_mm)
         else:
-            found += _row_segments(row, drawn_radius_mm(shape))
-    return [len(found), *itertools.chain.from_iterable(found)]
+            yield from _row_segments(row, drawn_radius_mm(shape))
 
 
 def _row_segments(row: DotRow, radius_mm: float) -> Iterator[Numbers]:
     """Numbers of the segments of a row of dots of a radius."""
-    pairs = [_segment(*pair) for pair in itertools.pairwise(row.points_mm)]
+    segments = list(itertools.starmap(_straight, itertools.pairwise(row.points_mm)))
     closes = math.isinf(row.begin_mm)
-    whole = sum(pair[LENGTH] for pair in pairs)
-    begin, end = max(row.begin_mm, _OPEN), min(whole - row.end_mm, -_OPEN)
-    along = 0.0
-    for number, pair in enumerate(pairs):
-        length = pair[LENGTH]
-        is_first, is_last = number == 0, number == len(pairs) - 1
-        low = _OPEN if is_first and not closes else along
-        high = -_OPEN if is_last and not closes else along + length
+    whole_mm = sum(segment[4] for segment in segments)
+    at_mm = 0.0
+    for number, segment in enumerate(segments):
+        length_mm = segment[4]
+        opens = number == 0 and not closes
+        ends = number == len(segments) - 1 and not closes
         # A dot beyond a bend that is nearer than it reaches might be cut off, too.
-        long = length >= 2 * radius_mm
-        open_begin = is_first and row.begin_mm < 0 and not closes and long
-        open_end = is_last and row.end_mm < 0 and not closes and long
-        yield _row_numbers(
-            (pair[:2], pair[2:4], length, row.pitch_mm, 1.0),
-            start=along,
-            owns=(low, high),
-            begin=(begin, *_turned(pairs[0], pair)),
-            end=(end, *_turned(pairs[-1], pair)),
-            open_ends=(float(open_begin), float(open_end)),
+        is_long = length_mm >= 2 * radius_mm
+        yield _RowOnSegment(
+            *segment[:5],
+            at_mm=at_mm,
+            pitch_mm=row.pitch_mm,
+            low_mm=-_FAR if opens else at_mm,
+            high_mm=_FAR if ends else at_mm + length_mm,
+            begin_mm=max(row.begin_mm, -_FAR),
+            begin_along=_along(segments[0], segment),
+            begin_across=_across(segments[0], segment),
+            end_mm=min(whole_mm - row.end_mm, _FAR),
+            end_along=_along(segments[-1], segment),
+            end_across=_across(segments[-1], segment),
+            is_cut_before=float(opens and row.begin_mm < 0 and is_long),
+            is_cut_after=float(ends and row.end_mm < 0 and is_long),
         )
-        along += length
+        at_mm += length_mm
 
 
-def _turned(seen: Numbers, segment: Numbers) -> tuple[float, float]:
-    """Direction of a segment as it is seen from another: along that, and across."""
-    right, down = seen[RIGHT], seen[DOWN]
-    along, across = segment[RIGHT], segment[DOWN]
-    return along * right + across * down, along * down - across * right
+def _along(seen: Numbers, segment: Numbers) -> float:
+    """Share of a segment along another one's direction, and below across it."""
+    return segment[2] * seen[2] + segment[3] * seen[3]
 
 
-def _row_numbers(
-    place: tuple[Sequence[float], Sequence[float], float, float, float],
-    *,
-    radius: float = 0.0,
-    start: float = 0.0,
-    vertex: float = 0.0,
-    owns: tuple[float, float] = (_OPEN, -_OPEN),
-    begin: tuple[float, float, float] = (_OPEN, 0.0, 0.0),
-    end: tuple[float, float, float] = (-_OPEN, 0.0, 0.0),
-    open_ends: tuple[float, float] = (0.0, 0.0),
-) -> Numbers:
-    """Numbers of dots that may move."""
-    at, direction, length, pitch, moves = place
-    own = (*at, *direction, length, radius, start, pitch, moves, vertex)
-    return (*own, *owns, *begin, *end, *open_ends)
+def _across(seen: Numbers, segment: Numbers) -> float:
+    return segment[2] * seen[3] - segment[3] * seen[2]

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.render import work
-from vbraille.render.instructions import LEAST_LANES, SCRATCH_ROWS
 from vbraille.render.work import ProgramKind
 
 if TYPE_CHECKING:
@@ -39,25 +38,28 @@ class Program:
 
     Attributes
     ----------
+    kind : ProgramKind
+        Kind of the picture.
     shape : tuple[int, int]
         Rows and columns of the display that the program was compiled for.
+    scratch : float64[m, n]
+        Room to work in, for one kernel at a time.
     """
 
-    __slots__ = ("_at", "_fill", "_last", "_scratch", "numbers", "shape", "table")
+    __slots__ = ("_at", "_fill", "_last", "kind", "numbers", "scratch", "shape", "table")
 
     def __init__(self, numbers: NDArray[np.float64], table: NDArray[np.uint16]) -> None:
         self.numbers = numbers
         self.table = table
-        self.shape = int(numbers[work.ROWS]), int(numbers[work.COLUMNS])
-        self._scratch = scratch_for(self.shape, self.kind)
+        self.kind = ProgramKind(int(numbers[work.KIND]))
+        rows, columns = self.shape = int(numbers[work.ROWS]), int(numbers[work.COLUMNS])
+        # A line's path is made of several places at once; a scene has room for its instructions.
+        places = max(rows, _BLOCK) * columns
+        more = numbers[work.INSTRUCTIONS] // places + 1 if self.kind is ProgramKind.SCENE else 0
+        self.scratch = np.zeros((work.LIVE_ROW + int(more), places))
         self._at = np.zeros(work.AT)
         self._last: NDArray[np.float64] | None = None  # at which the last frame of a way was made
         self._fill = None  # the kernel, which loads numba
-
-    @property
-    def kind(self) -> ProgramKind:
-        """Kind of the picture."""
-        return ProgramKind(int(self.numbers[work.KIND]))
 
     @property
     def nbytes(self) -> int:
@@ -68,11 +70,6 @@ class Program:
     def own_y_mm(self) -> float:
         """Place on the canvas, along y, of an array whose carriage measures no y."""
         return float(self.numbers[work.OWN_Y])
-
-    @property
-    def moves(self) -> bool:
-        """Tell whether the picture moves by itself, without the hand."""
-        return bool(self.numbers[work.FREQUENCY] > 0)
 
     def check_shape(self, shape: tuple[int, int]) -> None:
         """Compare the program's shape with that of the display that is to show it.
@@ -87,13 +84,6 @@ class Program:
                 f"the picture is for {self.shape[0]} × {self.shape[1]} actuators; "
                 f"the device has {shape[0]} × {shape[1]}"
             )
-
-    def part_of(self, y_mm: float, before: int = work.NO_PART) -> int:
-        """Tell which part is under an array with its centre at y, where ``before`` was before."""
-        # Importing kernels loads numba, which only a process that makes frames has to wait for.
-        from vbraille.render import kernels
-
-        return kernels.part_of(self.numbers, y_mm, before)
 
     def frame(
         self,
@@ -122,7 +112,7 @@ class Program:
         theta_rad
             Angle by which the array is turned, in radians.
         part
-            Number of the part of the picture that is shown; see `part_of`.
+            Number of the part of the picture that is shown: a line of a page.
         time_s
             The picture's own time, in seconds since its start.
 
@@ -132,6 +122,7 @@ class Program:
             If ``out`` has another shape than the array.
         """
         if self._fill is None:
+            # Importing kernels loads numba, which only a process that makes frames waits for.
             from vbraille.render import kernels
 
             self._fill = kernels.frame
@@ -146,7 +137,7 @@ class Program:
         # Kernels are compiled for float64 in one piece alone.
         fits = out.dtype is _DOUBLE and out.flags.c_contiguous
         made = out if fits else np.empty(out.shape)
-        self._fill(self.numbers, self.table, self._scratch, part, at, made)
+        self._fill(self.numbers, self.table, self.scratch, part, at, made)
         if not fits:
             out[:] = made
 
@@ -182,7 +173,7 @@ class Program:
             out = np.empty(shape, np.float32)
         elif out.shape != shape:
             raise ValueError(f"the frames have shape {out.shape}; it must be {shape}")
-        kernels.path(self.numbers, self.table, self._scratch, x_mm, out)
+        kernels.path(self.numbers, self.table, self.scratch, x_mm, out)
         return out
 
     def poses(
@@ -231,7 +222,8 @@ class Program:
             before = 1
         parts = np.zeros(len(at), np.int64)
         out = np.empty((len(at), *self.shape), np.float32)
-        kernels.poses(self.numbers, self.table, self._scratch, at, parts, out)
+        made = np.empty(self.shape)
+        kernels.poses(self.numbers, self.table, self.scratch, at, made, parts, out)
         self._last = at[-1:].copy() if len(at) else self._last
         return parts[before:], out[before:]
 
@@ -245,25 +237,9 @@ class Program:
             hold places of the left column itself, whose distance is 0.
         """
         numbers = self.numbers.copy()
-        numbers[work.ANCHOR] = anchor_mm
+        span_mm = (self.shape[1] - 1) * numbers[work.COLUMN_PITCH]
+        numbers[work.CENTER] = span_mm / 2 - anchor_mm
         return Program(numbers, self.table)
-
-
-def scratch_for(shape: tuple[int, int], kind: ProgramKind | None = None) -> NDArray[np.float64]:
-    """Make the scratch array that kernels need for frames of a shape.
-
-    Parameters
-    ----------
-    shape
-        Rows and columns of the frames.
-    kind
-        Kind of the programs that are shown; None for any, but then of a path only one place fits
-        at a time.
-    """
-    rows, columns = shape
-    if kind is None or kind is ProgramKind.SCENE:
-        return np.zeros((SCRATCH_ROWS, max(rows * columns, LEAST_LANES)))
-    return np.zeros((3, max(_BLOCK, rows) * columns))
 
 
 def head(
@@ -275,14 +251,17 @@ def head(
     numbers[work.OWN_Y] = own_y_mm
     numbers[work.EXPOSURE] = numbers[work.TILT] = math.inf
     numbers[work.ROWS], numbers[work.COLUMNS] = display.shape
+    numbers[work.COLUMN_PITCH] = display.column_pitch_mm
+    numbers[work.ROW_PITCH] = display.row_pitch_mm
     return numbers
 
 
 def nothing(display: Display) -> Program:
     """Make a line without a dot, for times when there is nothing to show."""
-    return Program(
-        head(display, ProgramKind.LINE, work.IDLE + 2 * display.rows), np.zeros(4, np.uint16)
-    )
+    places = work.CELLS + work.CELL_NUMBERS + 2 * display.rows
+    numbers = head(display, ProgramKind.LINE, places)
+    numbers[work.CELLS :][[work.CELL_PITCH, work.DOT_WIDTH, work.APART]] = 1.0
+    return Program(numbers, np.zeros(4, np.uint16))
 
 
 def vibration(

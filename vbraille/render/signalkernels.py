@@ -6,12 +6,14 @@ which is its kind. What it was before is in its memory, one number behind the va
 
 import math
 
-from vbraille.render.instructions import SIGNAL_NUMBERS, SIGNAL_ROWS, SIGNALS
 from vbraille.render.waves import compiled
 from vbraille.render.work import (
     MEMORY,
     MOST_SIGNALS,
     SIGNAL,
+    SIGNAL_NUMBERS,
+    SIGNAL_ROWS,
+    SIGNALS,
     SWITCHES,
     TIME,
     VX,
@@ -20,13 +22,14 @@ from vbraille.render.work import (
 from vbraille.scene.signals import SWITCH_BITS
 
 # Kinds, and the numbers of each.
-SPEED, DIRECTION, SWITCH, CLOCK, PRODUCT, INVERSE, INTEGRAL = map(float, range(7))
-# Of SPEED: begin and end of the fall, and the delay. Of DIRECTION: the same two of slow hands after
-# the angle, two angles of the fall, whether it is an axis, and what is at rest. Of SWITCH: the time
-# of a fade, how many levels there are, and these. Of CLOCK: shape and period. Of the others: how
-# many signals they are made of, and the numbers of these.
-HIGH, LOW, KEEP = 0.0, 1.0, 2.0
-SINE, SQUARE, RAMP = 0.0, 1.0, 2.0
+SPEED, DIRECTION, SWITCH, CLOCK, PRODUCT, INTEGRAL = map(float, range(6))
+# Of SPEED: begin and end of the fall, and the delay. Of DIRECTION: the same two of slow hands, the
+# angle, two angles of the fall, whether it is an axis, and what is at rest. Of SWITCH: the time of
+# a fade, how many levels there are, and these. Of CLOCK: shape and period. Of PRODUCT: factor, what
+# is added, how many signals it is made of, and the numbers of these. Of INTEGRAL: the signal.
+AT_REST = ("high", "low", "keep")
+SHAPES = ("sine", "square", "ramp")
+_HIGH, _KEEP, _SINE, _SQUARE = 0.0, 2.0, 0.0, 1.0  # of these
 _LONG_S = 1e9
 
 
@@ -47,73 +50,63 @@ def begin(numbers, at):
 @compiled
 def _falling(value, first, last):
     """Fall of eqs. 9.6 and 9.8: 1 below the first, 0 from the last on."""
-    if value < first:
-        return 1.0
-    return (last - value) / (last - first) if value < last else 0.0
+    return min(max((last - value) / (last - first), 0.0), 1.0)
 
 
 @compiled
 def compute(numbers, at, passed_s):
     """Compute the values of all signals at the velocity, time and switches of ``at``."""
+    speed = math.hypot(at[VX], at[VY])
     for n in range(int(numbers[SIGNALS])):
-        row = SIGNAL_ROWS + SIGNAL_NUMBERS * n
-        kind, memory, value = numbers[row], MEMORY + n, 0.0
+        first = SIGNAL_ROWS + SIGNAL_NUMBERS * n
+        kind, own = numbers[first], numbers[first + 1 : first + SIGNAL_NUMBERS]
+        before = at[MEMORY + n]
         if kind == SPEED:
-            speed = math.hypot(at[VX], at[VY])
-            if speed >= numbers[row + 2]:
-                at[memory] = 0.0
-            else:
-                value = _falling(speed, numbers[row + 1], numbers[row + 2])
-                at[memory] += passed_s
-                delay = numbers[row + 3]
-                if at[memory] < 2.0 * delay:  # eq. 9.7
-                    value *= max(at[memory] - delay, 0.0) / delay
+            value, delay = _falling(speed, own[0], own[1]), own[2]
+            before = before + passed_s if speed < own[1] else 0.0
+            if before < 2.0 * delay:  # eq. 9.7
+                value *= max(before - delay, 0.0) / delay
         elif kind == DIRECTION:
-            away = abs(math.atan2(at[VY], at[VX]) - numbers[row + 1])
+            away = abs(math.atan2(at[VY], at[VX]) - own[2])
             away = min(away, 2.0 * math.pi - away)
-            if numbers[row + 6] != 0.0:
+            if own[5] != 0.0:
                 away = min(away, math.pi - away)
-            value = _falling(away, numbers[row + 4], numbers[row + 5])
-            slow = _falling(math.hypot(at[VX], at[VY]), numbers[row + 2], numbers[row + 3])
-            rest = numbers[row + 7]
-            if rest == HIGH or (rest == KEEP and at[memory] != 0.0):
+            value, slow = _falling(away, own[3], own[4]), _falling(speed, own[0], own[1])
+            if own[6] == _HIGH or (own[6] == _KEEP and before != 0.0):
                 value = max(value, slow)
-                at[memory] = 1.0 if value > 0.0 else 0.0
+                before = 1.0 if value > 0.0 else 0.0
             else:
                 value = min(value, 1.0 - slow)
-                at[memory] = 0.0 if value < 1.0 else 1.0
+                before = 0.0 if value < 1.0 else 1.0
         elif kind == SWITCH:
             state = int(at[SWITCHES]) >> (SWITCH_BITS * n) & ((1 << SWITCH_BITS) - 1)
-            state = min(state, int(numbers[row + 2]) - 1)
-            value = numbers[row + 3 + state]
-            most = passed_s / numbers[row + 1] if numbers[row + 1] > 0.0 else 1.0
-            if at[memory] == at[memory]:
-                value = at[memory] + min(max(value - at[memory], -most), most)
-            at[memory] = value
+            value = own[2 + min(state, int(own[1]) - 1)]
+            most = passed_s / own[0] if own[0] > 0.0 else 1.0
+            if before == before:
+                value = before + min(max(value - before, -most), most)
+            before = value
         elif kind == CLOCK:
-            turns = at[TIME] / numbers[row + 2]
-            turns -= math.floor(turns)
-            if numbers[row + 1] == SINE:
-                value = 0.5 - 0.5 * math.cos(2.0 * math.pi * turns)
-            elif numbers[row + 1] == SQUARE:
-                value = 0.0 if turns < 0.5 else 1.0
-            else:
-                value = turns
+            turns = at[TIME] / own[1]
+            value = turns - math.floor(turns)
+            if own[0] == _SINE:
+                value = 0.5 - 0.5 * math.cos(2.0 * math.pi * value)
+            elif own[0] == _SQUARE:
+                value = 0.0 if value < 0.5 else 1.0
         elif kind == PRODUCT:
-            value = 1.0
-            for k in range(int(numbers[row + 1])):
-                value *= at[SIGNAL + int(numbers[row + 2 + k])]
-        elif kind == INVERSE:
-            value = 1.0 - at[SIGNAL + int(numbers[row + 2])]
+            value = own[0]
+            for k in range(int(own[2])):
+                value *= at[SIGNAL + int(own[3 + k])]
+            value += own[1]
         else:
-            at[memory] += passed_s * at[SIGNAL + int(numbers[row + 2])]
-            value = at[memory]
+            before += passed_s * at[SIGNAL + int(own[0])]
+            value = before
         at[SIGNAL + n] = value
+        at[MEMORY + n] = before
 
 
 @compiled
 def shut_gates(numbers, values):
-    """Tell which gates the values of signals shut: bits as `words.SHUT_BY` has them."""
+    """Tell which gates the values of signals shut: a bit for each that is 0, then for each at 1."""
     gates = 0
     for n in range(int(numbers[SIGNALS])):
         if values[n] == 0.0:

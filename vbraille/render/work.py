@@ -28,34 +28,57 @@ class ProgramKind(IntEnum):
     TILT,  # angle of the array beyond which nothing is shown, rad; infinite if any will do
     ROWS,  # rows and columns of the display that it was compiled for
     COLUMNS,
-    OWN,  # first of the numbers whose meaning differs from kind to kind
-) = range(9)
-
-# Braille: a line, or a page of lines.
-(
-    ANCHOR,  # from the left column to the point of the array that x tells, mm
     COLUMN_PITCH,
     ROW_PITCH,
-    LINES,  # how many lines the page has; 0 for a line alone
-    LINE_PITCH,
+    CENTER,  # from the point of the array that x tells to its middle, mm
+    ORIGIN_X,  # place of the canvas under an array at 0, 0
+    ORIGIN_Y,
+    OWN,  # first of the numbers whose meaning differs from kind to kind
+) = range(14)
+
+# A line, or a page of lines.
+(
     HYSTERESIS,  # distance between going to the next line and coming back, in line pitches
     FREE,  # 1 if each actuator shows what lies under it, 0 if rows keep to the line's rows of dots
-    DOT_ROW_PITCH,  # from one row of dots to the next, mm
-    SLOTS,  # slots of a line: 2 · (cells + 2)
-    CELLS_PER_MM,
+    CELLS,  # numbers of the cells
+) = range(OWN, OWN + 3)
+
+# Places of the numbers of lines of cells.
+(
+    LEFT,  # corner of the first cell, mm
+    TOP,
+    COSINE,  # of the direction of the lines
+    SINE,
+    WIDTH,  # of the rectangle of the cells, mm
+    HEIGHT,
+    LINES,
+    LINE_PITCH,
+    DOT_ROW_PITCH,
+    SLOTS,  # slots of a line
     CELL_PITCH,
-    DOTS_PER_MM,
     DOT_SPACING,
+    DOT_WIDTH,
+    TABLE,  # first of the words in the table
+    APART,  # 1 if no two columns of dots can be over one place
+    CONTRAST,
     PROFILE,
-    OVERLAP,  # 1 if two dots can be under one place
     SHAPE,  # the 6 coefficients of the profile
-    _S1,
-    _S2,
-    _S3,
-    _S4,
-    _S5,
-    IDLE,  # deflection of each row off the dots, then how far and which way a dot swings it
-) = range(OWN, OWN + 22)
+) = range(18)
+CELL_NUMBERS = SHAPE + 6
+
+FADE_MM = 1.0  # over which the opacity of a label ends
+LAST_ROW = 3  # of dots
+
+# A scene.
+(
+    RIGHT_MM,  # the canvas, from 0; beyond it nothing is shown
+    BOTTOM_MM,
+    INSTRUCTIONS,  # how many there are
+    SIGNALS,  # number of signals, and then each as `SIGNAL_NUMBERS` numbers
+    SIGNAL_ROWS,
+) = range(OWN, OWN + 5)
+SIGNAL_NUMBERS = 12
+CODE = SIGNAL_ROWS + MOST_SIGNALS * SIGNAL_NUMBERS  # place of the first instruction
 
 # Numbers that a frame is evaluated at: pose, the picture's own time, velocity, the states of
 # switches (three bits for each signal), the values of signals, and what these remember.
@@ -63,8 +86,22 @@ X, Y, THETA, TIME, VX, VY, SWITCHES, SIGNAL = range(8)
 MEMORY = SIGNAL + MOST_SIGNALS
 AT = MEMORY + MOST_SIGNALS
 
-# Rows of the kernels' scratch: the swing under each column, and the slot that the column is over.
-SWING, SLOT = range(2)
+# Rows of the kernels' scratch: the places of actuators, and then either the swing at each and the
+# slot that it is over, or rows of the evaluator: which way each vibrates, coordinates of shapes,
+# values of signals, a stack of deflections, and the instructions that matter.
+X_ROW, Y_ROW, SWING, SLOT = range(4)
+(
+    SIGN_ROW,
+    ACROSS_ROW,
+    ALONG_ROW,  # how far along, within ridges where contours have cycles of their own
+    PLACE_ROW,  # how far along
+    INSIDE_ROW,
+    PART_ROW,
+    GIVEN_ROW,
+    STACK_ROW,
+) = range(2, 10)
+DEPTH = 32  # values on the evaluator's stack
+LIVE_ROW = STACK_ROW + DEPTH + 1
 # How long a scene that moves by itself is shown to a hand that does not, s.
 PATIENCE_S = 60.0
 # Value for no part: no line of a page was under the array yet.

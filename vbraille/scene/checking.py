@@ -12,7 +12,6 @@ from msgspec.structs import replace
 
 from vbraille.carriers.carrier import LATERO, PANTOGRAPH, TACTOGRAPH
 from vbraille.scene.bounds import Box, bounds
-from vbraille.scene.measures import travel_deg
 from vbraille.scene.patterns import Fill, Group, Image, Label, Moving, Shape, Tile
 from vbraille.scene.signals import made_of
 from vbraille.scene.textures import LinearGrating, Uniform
@@ -121,16 +120,13 @@ class SceneReport:
         The elements in order.
     textures
         Number of different textures.
-    vibrations
-        Sentences about vibrations that meet.
     advice
-        Sentences about what tactile graphics ask.
+        Sentences about what is hard to feel, and about vibrations that meet.
     """
 
     kinds: dict[str, int]
     elements: tuple[ElementReport, ...]
     textures: int
-    vibrations: tuple[str, ...]
     advice: tuple[str, ...]
 
 
@@ -157,23 +153,11 @@ def check_scene(opened: OpenedScene, known: Boxes) -> SceneReport:
         )
         for number, (wrote, shown) in enumerate(zip(written.elements, scene.elements, strict=True))
     )
-    found = set().union(*(element.vibration_hz for element in elements))
-    meetings = [
-        (element, sentence)
-        for element, shown in zip(elements, scene.elements, strict=True)
-        for sentence in _meetings(shown, known)
-    ]
-    between = _between(scene.operation, scene.elements, known)
     return SceneReport(
         kinds=dict(sorted(counts.items(), key=lambda item: (-item[1], item[0]))),
         elements=elements,
         textures=_texture_count(scene),
-        vibrations=(
-            *_grouped(meetings),
-            *(f"the scene {sentence}" for sentence in between),
-            *_alike(found),
-        ),
-        advice=(*_advice(scene, elements), *_signal_advice(opened)),
+        advice=(*_advice(scene, elements, known), *_signal_advice(opened)),
     )
 
 
@@ -196,17 +180,7 @@ def _swinging(found: Iterable[Vibration | None]) -> set[float]:
     return {one.frequency_hz for one in found if one is not None and one.amplitude}
 
 
-def _grouped(told: Iterable[tuple[ElementReport, str]]) -> Iterator[str]:
-    """Sentences about elements; what holds for many is said once."""
-    by_sentence: dict[str, list[ElementReport]] = {}
-    for element, sentence in told:
-        by_sentence.setdefault(sentence, []).append(element)
-    for sentence, (first, *others) in by_sentence.items():
-        also = f" (and {count(len(others), 'other')})" if others else ""
-        yield f"{first.place}: {first.said()}{also} {sentence}"
-
-
-def _advice(scene: Scene, elements: Sequence[ElementReport]) -> Iterator[str]:
+def _advice(scene: Scene, elements: Sequence[ElementReport], known: Boxes) -> Iterator[str]:
     width_mm, height_mm = scene.canvas.width_mm, scene.canvas.height_mm
     reaches = [
         (c.travel_mm + _ARRAY_MM[0], c.height_mm + _ARRAY_MM[1], c.name)
@@ -220,11 +194,22 @@ def _advice(scene: Scene, elements: Sequence[ElementReport]) -> Iterator[str]:
         )
     if not elements:
         yield "the scene has no elements, so nothing can be felt; write some under [[elements]]"
-    yield from _grouped(
-        (element, sentence)
-        for element, shown in zip(elements, scene.elements, strict=True)
-        for sentence in dict.fromkeys([*_place_advice(element, shown, scene), *_felt_advice(shown)])
-    )
+    by_sentence: dict[str, list[ElementReport]] = {}
+    for element, shown in zip(elements, scene.elements, strict=True):
+        place, felt = _place_advice(element, shown, scene), _felt_advice(shown)
+        for sentence in dict.fromkeys((*place, *felt, *_meetings(shown, known))):
+            by_sentence.setdefault(sentence, []).append(element)
+    for sentence, (first, *others) in by_sentence.items():
+        also = f" (and {count(len(others), 'other')})" if others else ""
+        yield f"{first.place}: {first.said()}{also} {sentence}"
+    for sentence in _between(scene.operation, scene.elements, known):
+        yield f"the scene {sentence}"
+    for low, high in pairwise(sorted(frequencies(*scene.elements))):
+        if high - low < LEAST_DIFFERENCE_HZ:
+            yield (
+                f"vibrations of {low:g} and {high:g} Hz cannot be told apart; set them "
+                f"{LEAST_DIFFERENCE_HZ:g} Hz apart or more"
+            )
     textures = _texture_count(scene)
     if textures > MOST_TEXTURES:
         yield (
@@ -284,7 +269,7 @@ def _waves(pattern: AnyPattern) -> Iterator[tuple[str, RidgeWave]]:
         x_mm_s, y_mm_s = pattern.velocity_mm_s
         for part in each(pattern.part):
             if isinstance(part, LinearGrating):
-                angle = math.radians(travel_deg(part.wave_angle_deg, part.ridge_angle_deg))
+                angle = math.radians(part.travel_deg)
                 across_mm_s = x_mm_s * math.cos(angle) + y_mm_s * math.sin(angle)
                 yield "a grating", part.wave._replace(speed=across_mm_s)
 
@@ -357,16 +342,6 @@ def _between(operation: Operation, parts: Sequence[AnyPattern], known: Boxes) ->
         if box is None or other_box is None or not box.common(other_box).is_empty:
             said.add(_MEETINGS[operation].format(_hz(hz), _hz(other_hz), _masked(hz, other_hz)))
     return sorted(said)
-
-
-def _alike(found: set[float]) -> Iterator[str]:
-    """Sentences about frequencies of a scene that cannot be told apart."""
-    for low, high in pairwise(sorted(found)):
-        if high - low < LEAST_DIFFERENCE_HZ:
-            yield (
-                f"vibrations of {low:g} and {high:g} Hz cannot be told apart; set them "
-                f"{LEAST_DIFFERENCE_HZ:g} Hz apart or more"
-            )
 
 
 def _masked(one: set[float], other: set[float]) -> str:

@@ -18,6 +18,7 @@ from vbraille.errors import InputError
 from vbraille.scene.reading import form_of, read_foreign, with_files
 from vbraille.scene.traversal import mapped
 from vbraille.toml import Table
+from vbraille.wording import printable
 
 if TYPE_CHECKING:
     from vbraille.scene.locations import FoundScene
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     Comments = Mapping[Steps, tuple[str, ...]]
 
 LONGEST = 72  # columns of a line, where that can be
-_LINE = re.compile(r"line (\d+)")
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _fields = cache(fields)
 
@@ -136,7 +136,7 @@ class ConvertedScene:
 def convert_scene(path: Path, folder: Path, *, as_shown: bool = False) -> ConvertedScene:
     """Make a scene file of a file of another format, OpenLatero's or SVG.
 
-    Comments say where each element comes from, and what differs.
+    Comments say what differs, and where each element comes from.
 
     Parameters
     ----------
@@ -199,25 +199,15 @@ def _relative(file: Path, folder: Path) -> str:
         return file.as_posix()
 
 
-def _comments(path: Path, found: FoundScene) -> dict[Steps, tuple[str, ...]]:
-    """Comments on the file and on its elements: where they come from, and what differs."""
-    comments: dict[Steps, list[str]] = {(): [f"Converted from {_printed(path.name)}."]}
-    for steps, line in found.lines.items():
-        comments[steps] = [f"From line {line}."]
-    for warning in found.warnings:
-        comments[_about(warning, found.lines)] += textwrap.wrap(
-            _printed(warning), LONGEST - 2, break_long_words=False, break_on_hyphens=False
+def _comments(path: Path, found: FoundScene) -> Comments:
+    """Comments on the file, with all that differs, and on the line that each element is from."""
+    said = [f"Converted from {path.name}.", *found.warnings]
+    lines = [
+        line
+        for one in said
+        for line in textwrap.wrap(
+            printable(one), LONGEST - 2, break_long_words=False, break_on_hyphens=False
         )
-    return {steps: tuple(lines) for steps, lines in comments.items()}
-
-
-def _about(warning: str, lines: Mapping[Steps, int]) -> Steps:
-    """Element of the scene that a warning is about: the last that begins at its line or before."""
-    found = _LINE.match(warning)
-    line = int(found[1]) if found else 0
-    before = [(at, steps) for steps, at in lines.items() if len(steps) == 2 and at <= line]
-    return max(before)[1] if before else ()
-
-
-def _printed(text: str) -> str:
-    return "".join(c if c.isprintable() else "?" for c in text)
+    ]
+    comments: dict[Steps, tuple[str, ...]] = {(): tuple(lines)}
+    return comments | {steps: (f"From line {line}.",) for steps, line in found.lines.items()}

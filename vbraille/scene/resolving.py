@@ -18,6 +18,7 @@ from vbraille.scene.stock import STOCK, stock_textures
 from vbraille.scene.traversal import (
     children,
     each,
+    mapped,
     moved,
     placed_children,
     points_of,
@@ -27,7 +28,7 @@ from vbraille.scene.traversal import (
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Mapping
 
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Scene
@@ -97,22 +98,29 @@ class _Resolving:
     def scene(self) -> Scene:
         """Resolve the whole scene."""
         written = self._written
-        for name, pattern in written.textures.items():
-            self._name(("textures", name), name, pattern)
-        for steps, pattern in self._all():
-            self._count(steps, _amounts(pattern))
-            if pattern.id:
-                self._name(steps, pattern.id, pattern)
-            for more, name in signals_of(pattern):
-                self._check_signal((*steps, *more), name)
+        elements = [(("elements", number), one) for number, one in enumerate(written.elements)]
+        textures = [(("textures", name), one) for name, one in written.textures.items()]
+        for steps, pattern in textures:
+            self._name(steps, steps[1], pattern)
+        for steps, pattern in (*textures, *elements):
+            self._look_at(steps, pattern, 1)
         self._check_signals()
-        for name in written.textures:  # also those that nothing uses are to be right
-            self._body(name, ("textures", name), 1)
-        elements = tuple(
-            self._resolved(element, ("elements", number), 1)
-            for number, element in enumerate(written.elements)
-        )
-        return replace(written, textures={}, elements=elements)
+        for steps, _ in textures:  # also those that nothing uses are to be right
+            self._body(steps[1], steps, 1)
+        resolved = tuple(self._resolved(pattern, steps, 1) for steps, pattern in elements)
+        return replace(written, textures={}, elements=resolved)
+
+    def _look_at(self, steps: Steps, pattern: AnyPattern, depth: int) -> None:
+        """Take in the names and the amount of a pattern as it is written, and its parts."""
+        if depth > MOST_DEPTH:
+            self._fail(steps, f"nests more than {MOST_DEPTH} deep; make it flatter")
+        self._count(steps, _amounts(pattern))
+        if pattern.id:
+            self._name(steps, pattern.id, pattern)
+        for more, name in signals_of(pattern):
+            self._check_signal((*steps, *more), name)
+        for more, part in placed_children(pattern):
+            self._look_at((*steps, *more), part, depth + 1)
 
     def _check_signals(self) -> None:
         """Refuse signals that lead back to themselves or are not there, and too many of them."""
@@ -143,20 +151,6 @@ class _Resolving:
         signals = self._written.signals
         if name not in signals:
             self._fail(steps, f"is {name!r}, which is no signal here{nearest(name, signals)}")
-
-    def _all(self) -> Iterator[tuple[Steps, AnyPattern]]:
-        """All patterns of the scene as it is written, in order, with the keys that lead to them."""
-        left: list[tuple[Steps, AnyPattern, int]] = [
-            *((("textures", name), one, 1) for name, one in self._written.textures.items()),
-            *((("elements", n), one, 1) for n, one in enumerate(self._written.elements)),
-        ][::-1]
-        while left:
-            steps, pattern, depth = left.pop()
-            if depth > MOST_DEPTH:
-                self._fail(steps, f"nests more than {MOST_DEPTH} deep; make it flatter")
-            yield steps, pattern
-            inside = [((*steps, *more), part, depth + 1) for more, part in placed_children(pattern)]
-            left += inside[::-1]
 
     def _name(self, steps: Steps, name: str, pattern: AnyPattern) -> None:
         if name.startswith(STOCK):
@@ -208,9 +202,14 @@ class _Resolving:
     def _body(self, name: str, steps: Steps, depth: int) -> _Body:
         """Return what a name stands for, made once; it is to stand at a depth."""
         if name not in self._bodies:
+            if name in self._open:
+                way = ", ".join([*self._open[self._open.index(name) :], name])
+                self._fail(steps, f"uses itself: {way}; leave one of these uses out")
+            if len(self._open) >= MOST_DEPTH:
+                self._fail(steps, f"uses uses more than {MOST_DEPTH} deep; make it flatter")
             there, written = self._of_name(name, steps)
             self._open.append(name)
-            pattern = _nameless(self._resolved(written, there, depth))
+            pattern = mapped(self._resolved(written, there, depth), _nameless)
             self._open.pop()
             amounts: Counter[str] = Counter()
             for one in each(pattern):
@@ -222,12 +221,7 @@ class _Resolving:
         return body
 
     def _of_name(self, name: str, steps: Steps) -> tuple[Steps, AnyPattern]:
-        """Return the pattern that has a name, as it is written, and its place."""
-        if name in self._open:
-            way = ", ".join([*self._open[self._open.index(name) :], name])
-            self._fail(steps, f"uses itself: {way}; leave one of these uses out")
-        if len(self._open) >= MOST_DEPTH:
-            self._fail(steps, f"uses uses more than {MOST_DEPTH} deep; make it flatter")
+        """Return the place of the pattern that has a name, and the pattern as it is written."""
         if name in self._named:
             return self._named[name]
         stock = {f"{STOCK}{one}": pattern for one, pattern in stock_textures().items()}
@@ -252,8 +246,8 @@ def _depth(pattern: AnyPattern) -> int:
 
 
 def _nameless(pattern: AnyPattern) -> AnyPattern:
-    """Pattern without ids, since each is the name of one thing."""
-    return _called(with_children(pattern, lambda _, part: _nameless(part)), {"id": ""})
+    """Pattern without its id, since each is the name of one thing."""
+    return _called(pattern, {"id": ""})
 
 
 def _called(pattern: AnyPattern, called: Mapping[str, str]) -> AnyPattern:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import json
 import re
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import msgspec
 
@@ -18,19 +18,23 @@ _NAMES = re.compile(r"^(\w+(?:, \w+)*)\n((?:^ +.*\n?|^\n)+)", re.MULTILINE)
 
 
 def scene_schema() -> dict[str, Any]:
-    """JSON Schema of scene files, made from the values: their keys, types, defaults and docstrings.
+    """JSON Schema of scene files, made from the values: keys, types, limits, defaults, docstrings.
 
     What cannot go together is not in it; the values check that.
     """
     (made,), tables = msgspec.json.schema_components([SceneFile])
     for table in tables_of(SceneFile):
-        _describe(tables[table.__name__], table)
+        schema, texts = tables[table.__name__], told(table)
+        schema["description"] = summary(table)
+        for name, field in schema["properties"].items():
+            if name in texts:  # the kind of a pattern has none
+                field["description"] = texts[name]
     return {
         "$schema": _DIALECT,
         "title": "Scene of vbraille",
         "description": "A tactile picture, or a bank of textures for others, as a TOML file.",
         **made,
-        "$defs": {name: _without_null(table) for name, table in tables.items()},
+        "$defs": tables,
     }
 
 
@@ -42,20 +46,14 @@ def schema_text() -> str:
 def tables_of(kind: type[Table]) -> list[type[Table]]:
     """Kinds of tables that a table may have in it, at any depth, itself first."""
     found: list[type[Table]] = []
-    left: list[Any] = [msgspec.inspect.type_info(kind)]
+    left: list[Any] = [kind]
     while left:
-        one = left.pop()
-        if isinstance(one, msgspec.inspect.StructType):
-            if one.cls in found or not issubclass(one.cls, Table):
-                continue
-            found.append(one.cls)
-            left += [field.type for field in reversed(one.fields)]
-        elif isinstance(one, msgspec.inspect.UnionType):
-            left += reversed(one.types)
-        elif isinstance(one, msgspec.inspect.VarTupleType):
-            left.append(one.item_type)
-        elif isinstance(one, msgspec.inspect.DictType):
-            left.append(one.value_type)
+        hint = left.pop()
+        inner = get_args(hint)
+        if isinstance(hint, type) and issubclass(hint, Table) and hint not in found:
+            found.append(hint)
+            inner = tuple(get_type_hints(hint).values())
+        left += reversed(inner)
     return found
 
 
@@ -77,32 +75,8 @@ def summary(table: type[Table]) -> str:
     )
 
 
-def _describe(schema: dict[str, Any], table: type[Table]) -> None:
-    """Put sentences for people into the schema of a table."""
-    schema["description"] = summary(table)
-    texts = told(table)
-    for name, field in schema["properties"].items():
-        if name in texts:
-            field["description"] = texts[name]
-
-
 def _plain(text: str) -> str:
     """Text of a docstring without its marks of code."""
     text = text.replace("``", "").replace("`", "")
     text = text.replace(". None for", ". Left out for").replace("None for", "left out for")
     return text.replace("None if", "left out if")
-
-
-def _without_null(schema: Any) -> Any:
-    """Schema without null, which TOML does not have: what may be null is left out there."""
-    if isinstance(schema, list):
-        return [_without_null(one) for one in schema]
-    if not isinstance(schema, dict):
-        return schema
-    if schema.get("default", 0) is None:
-        schema = {key: value for key, value in schema.items() if key != "default"}
-    choices = schema.get("anyOf", [])
-    kept = [one for one in choices if one != {"type": "null"}]
-    if len(kept) == 1 and len(choices) == 2:
-        schema = {**{k: v for k, v in schema.items() if k != "anyOf"}, **kept[0]}
-    return {key: _without_null(value) for key, value in schema.items()}

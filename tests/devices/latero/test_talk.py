@@ -18,7 +18,7 @@ from vbraille.devices.events import (
     Unplugged,
     WatchdogTripped,
 )
-from vbraille.devices.latero.device import ENCODERS, NO_SWITCH, OTHER_VERSION, POWER_OFF, Requests
+from vbraille.devices.latero.device import ENCODERS, NO_SWITCH, POWER_OFF, Requests
 
 SHOWN = np.rint(150 * (1 - FELT)).astype(np.uint8).ravel()
 
@@ -331,13 +331,3 @@ def test_lost_steps_are_told_once():
     bench.board.encoder_errors = 0b010
     bench.run(50)
     assert [notice.code for notice in bench.of(Notice)] == [ENCODERS]
-
-
-def test_another_version_in_place_of_the_latero_is_said():
-    bench = Bench().run(50)
-    bench.spoil = lambda answer: answer[:1] + b"\x21" + answer[2:]
-    bench.run(1300)
-    assert [notice.text for notice in bench.of(Notice)] == [OTHER_VERSION]
-    bench.spoil = lambda answer: answer
-    bench.run(50)
-    assert bench.device.taking

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.braille.cells import PLACES, dots_of
-from vbraille.render.braille.dots import Profile, half_sine_peak
+from vbraille.render import Profile
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -37,6 +37,17 @@ def raised_cosine(u_mm: ArrayLike, width_mm: float, tuning: Tuning) -> NDArray[n
     level = tuning.texture
     delta = (1 - level) * bump(p) + level * texture(p, tuning.cycles)
     return (delta + 1) / 2
+
+
+def half_sine_peak(level: float) -> float:
+    """Find M(a), the largest value of sin θ + a sin 8θ on [0, π], with a = level / 8."""
+    a = level / 8
+    theta = np.linspace(0, np.pi, 4097)
+    best = theta[np.argmax(np.sin(theta) + a * np.sin(8 * theta))]
+    for _ in range(4):  # Newton, on the derivative
+        slope = np.cos(best) + 8 * a * np.cos(8 * best)
+        best -= slope / (-np.sin(best) - 64 * a * np.sin(8 * best))
+    return float(np.sin(best) + a * np.sin(8 * best))
 
 
 def half_sine(u_mm: ArrayLike, width_mm: float, tuning: Tuning) -> NDArray[np.float64]:

@@ -3,7 +3,7 @@ from dataclasses import FrozenInstanceError, replace
 import pytest
 
 from vbraille.render import Tuning
-from vbraille.render.braille.dots import MOST_TEXTURE_CYCLES
+from vbraille.render.braille.style import MOST_TEXTURE_CYCLES
 
 
 def test_defaults():

@@ -12,8 +12,8 @@ from tests.render.scene.twinsignals import SIGNALS
 from vbraille.display import Display
 from vbraille.render import STRESS2_8X8
 from vbraille.render.compiling import compile_scene
-from vbraille.render.labels import Assets, Written, box_of
-from vbraille.scene.bitmap import WHOLE, Bitmap, bitmap_box
+from vbraille.render.labels import Assets, Written
+from vbraille.scene.bitmap import WHOLE, Bitmap
 from vbraille.scene.patterns import Image, Label
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.traversal import each
@@ -63,9 +63,7 @@ def assets_of(*parts):
 
 def known_boxes(assets):
     """Boxes of the images and labels in assets."""
-    boxes = {image: bitmap_box(bitmap) for image, bitmap in assets.bitmaps.items()}
-    boxes |= {label: box_of(label, written) for label, written in assets.written.items()}
-    return {pattern: box for pattern, box in boxes.items() if box is not None}
+    return assets.boxes()
 
 
 # Poses

@@ -11,18 +11,15 @@ from hypothesis import strategies as st
 from tests.render.scene.twinbraille import label_deflections, label_opacity
 from tests.tiers import examples
 from vbraille.braille.geometry import PRESETS
-from vbraille.render import STRESS2_8X8, VBD, Tuning, cellkernels
-from vbraille.render.braille.style import Profile
-from vbraille.render.cellkernels import FADE_MM, TABLE
-from vbraille.render.labels import (
-    Written,
-    corners_mm,
-    pack_label,
-    size_mm,
-)
+from vbraille.render import STRESS2_8X8, VBD, Tuning
+from vbraille.render.braille.mappings import DOT_BITS
+from vbraille.render.braille.style import Profile, cells_size_mm, pack_cells
+from vbraille.render.cellkernels import highest_dot, opacity
+from vbraille.render.labels import Written, corners_mm
+from vbraille.render.work import FADE_MM, TABLE
 from vbraille.scene.patterns import Label
 
-_FIRST, _WORDS = 7, 11  # a label's numbers and words stand anywhere in those of a program
+_WORDS = 11  # a label's words stand anywhere in those of a program
 
 styles = st.builds(
     replace,
@@ -50,14 +47,13 @@ labels = st.builds(
 
 
 def by_kernel(label, written, x_mm, y_mm):
-    packed = pack_label(label, written)
-    numbers = np.concatenate((np.full(_FIRST, np.nan), packed.numbers))
-    table = np.concatenate((np.full(_WORDS, 0xFFFF, np.uint16), packed.table))
-    numbers[_FIRST + TABLE] = _WORDS
-    found, opacity = np.full((2, x_mm.size), np.nan)
-    cellkernels.label(numbers, _FIRST, table, x_mm, y_mm, x_mm.size, found)
-    cellkernels.label_opacity(numbers, _FIRST, x_mm, y_mm, x_mm.size, opacity)
-    return found, opacity
+    place = (*label.place_mm, math.radians(label.angle_deg))
+    cells, words = pack_cells(written.lines, written.style, DOT_BITS, place)
+    cells[TABLE] = _WORDS
+    table = np.concatenate((np.full(_WORDS, 0xFFFF, np.uint16), words))
+    places = list(zip(x_mm, y_mm, strict=True))
+    found = [highest_dot(cells, table, x, y) for x, y in places]
+    return np.array(found), np.array([opacity(cells, x, y) for x, y in places])
 
 
 def places_on(label, written, count, seed):
@@ -73,11 +69,11 @@ def places_on(label, written, count, seed):
 @examples(60)
 def test_the_kernel_is_its_twin(label, written, seed):
     x_mm, y_mm = places_on(label, written, 200, seed)
-    found, opacity = by_kernel(label, written, x_mm, y_mm)
+    found, hides = by_kernel(label, written, x_mm, y_mm)
     want = label_deflections(label, written, x_mm, y_mm)
     np.testing.assert_allclose(found, want, rtol=0, atol=1e-9)
     mask = label_opacity(label, written, x_mm, y_mm)
-    np.testing.assert_allclose(opacity, mask, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(hides, mask, rtol=0, atol=1e-9)
     assert found.min() >= 0
     assert (found <= mask).all()
 
@@ -123,14 +119,14 @@ def test_a_label_hides_what_it_stands_on_as_far_as_its_cells_go():
     style = STRESS2_8X8.style
     written = Written((np.array([0b111, 0], np.uint8),), style)
     label = Label(text="l", place_mm=(0.0, 0.0))
-    width_mm, height_mm = size_mm(written)
     geometry = style.geometry
+    width_mm, height_mm = cells_size_mm(written.lines, geometry)
     assert width_mm == pytest.approx(geometry.extent_mm(2))
     assert height_mm == pytest.approx(2 * geometry.row_spacing_mm + geometry.dot_width_mm)
     half_mm = geometry.dot_width_mm / 2
     x_mm = np.array([1.0, width_mm, width_mm + half_mm + FADE_MM / 2, width_mm + half_mm + 1.01])
-    _, opacity = by_kernel(label, written, x_mm, np.full(4, height_mm / 2))
-    np.testing.assert_allclose(opacity, (1.0, 1.0, 0.5, 0.0), atol=1e-12)
+    _, hides = by_kernel(label, written, x_mm, np.full(4, height_mm / 2))
+    np.testing.assert_allclose(hides, (1.0, 1.0, 0.5, 0.0), atol=1e-12)
 
 
 def test_nothing_is_felt_at_no_place_nor_of_no_cells():
@@ -140,6 +136,6 @@ def test_nothing_is_felt_at_no_place_nor_of_no_cells():
         written = Written((np.array(masks, np.uint8),), STRESS2_8X8.style)
         # Not compiled, the kernels are python, and numpy warns of what has no number.
         with np.errstate(invalid="ignore"):
-            found, opacity = by_kernel(label, written, nowhere, np.array([1.0, 1.0, np.nan]))
+            found, hides = by_kernel(label, written, nowhere, np.array([1.0, 1.0, np.nan]))
         assert not found.any()
-        assert not opacity.any()
+        assert not hides.any()

@@ -9,7 +9,7 @@ from vbraille.errors import InputError
 from vbraille.labelling import write_labels
 from vbraille.render import LATERO, STRESS2_8X8, Straying
 from vbraille.render.compiling import compile_scene
-from vbraille.render.figures import FIGURE, PAGE, page_with_figure
+from vbraille.render.figures import FIGURE, PAGE, FigureAt, page_with_figures
 from vbraille.render.labels import Assets
 from vbraille.scene.bitmap import Bitmap
 from vbraille.scene.patterns import Circle, Group, Image, Label, LinearGrating, Tile, Uniform
@@ -21,6 +21,10 @@ STYLE = STRESS2_8X8.style
 
 def figure(*elements, **more):
     return Scene(canvas=Canvas(width_mm=60, height_mm=40), elements=elements, **more)
+
+
+def page_with_figure(lines, style, figure, place_mm, assets=None):
+    return page_with_figures(lines, style, (FigureAt(figure, place_mm, assets or Assets()),))
 
 
 CIRCLE = Circle(center_mm=(30, 20), radius_mm=10, stroke=Stroke())

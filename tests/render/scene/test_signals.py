@@ -12,8 +12,8 @@ from tests.render.scene.scenes import examples, numbers
 from tests.render.scene.showing import STRESS2_8X8_ARRAY, actuators, assets_of
 from tests.render.scene.showing import At as Pose
 from tests.render.scene.twinsignals import Signals
-from vbraille.render import instructions, work
-from vbraille.render.compiling import SceneMap, compile_scene, signal_numbers
+from vbraille.render import work
+from vbraille.render.compiling import SceneMap, compile_scene
 from vbraille.render.signalkernels import begin, compute
 from vbraille.scene.patterns import Circle, Fill, Group, Moving, StraightLine
 from vbraille.scene.scene import Canvas, Scene
@@ -69,8 +69,7 @@ def test_signals_are_those_of_the_equations_at_each_tick(signals, seed):
         signals=signals,
         elements=(LinearGrating(ridge_mm=2, velocity_mm_s=5, velocity_by="first"),),
     )
-    numbers, at = np.zeros(instructions.CODE), np.zeros(work.AT)
-    numbers[instructions.SIGNALS :] = signal_numbers(scene)
+    numbers, at = compile_scene(scene, STRESS2_8X8_ARRAY).numbers, np.zeros(work.AT)
     begin(numbers, at)
     reference = Signals(signals, ["first"])
     names = [one.name if one.signal else f"∫{one.name}" for one in ordered(signals, ["first"])]

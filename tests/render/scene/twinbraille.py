@@ -9,8 +9,8 @@ import numpy as np
 
 from tests.render.braille.reference import SWINGS
 from vbraille.braille.cells import PLACES, dots_of
-from vbraille.render.cellkernels import FADE_MM
-from vbraille.render.labels import size_mm
+from vbraille.render.braille.style import cells_size_mm
+from vbraille.render.work import FADE_MM
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -66,7 +66,7 @@ def label_opacity(
     It is 1 on the rectangle of its cells, grown by a dot's radius, and ends over `FADE_MM`; the
     source has no labels (after Lévesque 2009, 8.4.5).
     """
-    width_mm, height_mm = size_mm(written)
+    width_mm, height_mm = cells_size_mm(written.lines, written.style.geometry)
     if width_mm == 0:
         return np.zeros(np.shape(x_mm))
     radius_mm = written.style.geometry.dot_width_mm / 2

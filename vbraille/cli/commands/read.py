@@ -110,6 +110,7 @@ def read(ctx: click.Context, number: int = 1) -> None:
         )
         written = "braille as it is" if book.table is None else book.table.said
         say(f"line width: {count(width, 'cell')}, {written}", aside=True)
+        reader.begin()
         try:
             equipment.explore(ctx, reader, own=True)
         finally:

@@ -105,7 +105,6 @@ def _print(loaded: LoadedScene, report: SceneReport) -> None:
     for element in report.elements:
         say(_described(element))
     remarks = [f"file: {note}" for note in loaded.notes]
-    remarks += [f"vibration: {sentence}" for sentence in report.vibrations]
     remarks += [f"advice: {sentence}" for sentence in report.advice]
     for remark in remarks:
         say(remark)

@@ -55,6 +55,7 @@ def command(ctx: click.Context, **chosen: Any) -> None:
             equipment.outputs,
             Places(None, equipment.say).book("", Path(), ""),
         )
+        reader.begin()
         name = display_name(model)
         kept = settings.path.with_name(f"{settings.path.stem}-tune-{settings.profile}-{name}.json")
         tuning = Tuning(reader, kept, settings.profile, again=chosen["again"])

@@ -17,8 +17,8 @@ import subprocess
 import sys
 import time
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final, NamedTuple
 from urllib.parse import parse_qsl
 
 import numpy as np
@@ -98,7 +98,7 @@ _START_S: Final = 10.0  # that the watchdog may take, on a machine with a lot to
 _END_S: Final = 2.0  # and to bring blades to rest, or after a client that was killed
 
 # Notices, each by its code.
-POWER_OFF, PLACE, ENCODERS, VERSION = 1, 2, 3, 4
+POWER_OFF, PLACE, ENCODERS = 1, 2, 3
 UNPOWERED: Final = "its motor power is off; switch it on, and reading goes on"
 NO_SWITCH: Final = (
     "how its motor power is switched is not known, so that it stays on; give power=ADDRESS"
@@ -107,14 +107,9 @@ WHERE: Final = (
     "the near left corner of a Latero is the lower left one, with its third arm straight up: from "
     "the array it goes straight away from you"
 )
-OTHER_VERSION: Final = (
-    "what answers now speaks another version of the Latero's protocol; reading goes on when the "
-    "Latero is back"
-)
 
 
-@dataclass(frozen=True, slots=True)
-class LateroAddress:
+class LateroAddress(NamedTuple):
     """Address of a Latero, and what is known of it beforehand.
 
     Parameters
@@ -386,7 +381,6 @@ class LateroDevice(Device):
         # Power is switched on only where we switched it off: at the start, and after a rest.
         self._may_power, self._tries = True, 0
         self._away: Event | None = None  # why nothing can be read
-        self._told_version = False
         self._held = self._pressed = 0  # buttons, a bit each: as they are read, and debounced
         self._held_ns = 0
         self._reconnections = self._unsent = self._trips = 0
@@ -621,9 +615,6 @@ class LateroDevice(Device):
         answer = parse_answer(datagram)
         if isinstance(answer, Foreign):
             self.foreign[answer] += 1
-            if answer is Foreign.VERSION and self._away and not self._told_version:
-                self._told_version = True
-                self._events.append(Notice(VERSION, OTHER_VERSION))
             return
         # Where no frame is made of it, an old answer says what is to be known as well as a new one.
         late_ns = self._late_ns if self.taking and isinstance(answer, Answer) else SILENCE_NS
@@ -642,7 +633,7 @@ class LateroDevice(Device):
             self._place_by(None)  # encoders that had no power count from anywhere
             return
         if self._away is not None:
-            self._away, self._told_version = None, False
+            self._away = None
             self._reconnections += 1
             self._events.append(Back())
         if before is not None and answer.interface & ~before.interface & ENCODER_ERRORS:

@@ -137,8 +137,7 @@ def full_request() -> bytearray:
 
 def number(request: bytearray, sequence: int) -> None:
     """Give a request its number."""
-    request[SEQUENCE_AT] = sequence >> 8 & 0xFF
-    request[SEQUENCE_AT + 1] = sequence & 0xFF
+    request[SEQUENCE_AT : SEQUENCE_AT + 2] = sequence.to_bytes(2, "big")
 
 
 def raw_request(command: int, address: int, data: int = 0) -> bytearray:
@@ -151,17 +150,16 @@ def raw_request(command: int, address: int, data: int = 0) -> bytearray:
 def parse_answer(datagram: bytes | bytearray | memoryview) -> Answer | RawAnswer | Foreign:
     """Answer that a datagram is, or what it is instead."""
     size = len(datagram)
-    if size == FULLR_BYTES:
-        magic, version, kind, *found = _FULLR.unpack(datagram)
-        if magic == MAGIC and version == VERSION and kind in (FULLR0, FULLR1):
-            sequence, dio_in, controller, interface, a, b, c, d, *adc = found
-            return Answer(sequence, dio_in, controller, interface, (a, b, c, d), tuple(adc))
-    elif size == RAWR_BYTES:
-        magic, version, kind, sequence = _HEAD.unpack_from(datagram)
-        if magic == MAGIC and version == VERSION and kind == RAWR:
-            return RawAnswer(sequence, *_RAW.unpack_from(datagram, _HEAD.size))
-    if size >= _HEAD.size and datagram[0] == MAGIC and datagram[1] != VERSION:
+    if size < _HEAD.size or datagram[0] != MAGIC:
+        return Foreign.OTHER
+    _, version, kind, sequence = _HEAD.unpack_from(datagram)
+    if version != VERSION:
         return Foreign.VERSION
+    if size == FULLR_BYTES and kind in (FULLR0, FULLR1):
+        words = _FULLR.unpack(datagram)[4:]
+        return Answer(sequence, *words[:3], words[3:7], words[7:])  # pyright: ignore
+    if size == RAWR_BYTES and kind == RAWR:
+        return RawAnswer(sequence, *_RAW.unpack_from(datagram, _HEAD.size))
     return Foreign.OTHER
 
 
@@ -184,20 +182,9 @@ def parse_request(datagram: bytes) -> LateroRequest | None:
 
 def pack_answer(answer: Answer, kind: int) -> bytes:
     """Datagram of an answer, FULLR0 or FULLR1."""
-    return _FULLR.pack(
-        MAGIC,
-        VERSION,
-        kind,
-        answer.sequence,
-        answer.dio_in,
-        answer.controller,
-        answer.interface,
-        *answer.encoders,
-        *answer.adc,
-    )
+    return _FULLR.pack(MAGIC, VERSION, kind, *answer[:4], *answer.encoders, *answer.adc)
 
 
 def pack_raw_answer(answer: RawAnswer) -> bytes:
     """Datagram of an answer to RAW."""
-    head = _HEAD.pack(MAGIC, VERSION, RAWR, answer.sequence)
-    return head + _RAW.pack(answer.command, answer.address, answer.data)
+    return _HEAD.pack(MAGIC, VERSION, RAWR, answer.sequence) + _RAW.pack(*answer[1:])

@@ -1,19 +1,30 @@
-"""Style of braille, as one value, which compiles a line or a page of braille."""
+"""Style of braille, as one value, which compiles a line or a page of braille.
+
+Lines of cells have a frame of their own: u along them and v down across them, in mm, from the top
+left corner of the first cell, which is where the square around dot 1 begins. With angle φ::
+
+    u = (x - x0) cos φ + (y - y0) sin φ,    v = (y - y0) cos φ - (x - x0) sin φ
+
+The dot in column s (0 left, 1 right) and row r of cell c of line n is round where actuators show
+what lies under them; its square begins at u = c · cell pitch + s · dot spacing and v = n · line
+pitch + r · row spacing. Off the dots such lines are at rest, whatever the mapping of their style.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
+from enum import IntEnum
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, Final, Literal, Self, TypedDict, Unpack
 
 import numpy as np
+from numpy.polynomial import chebyshev
 
 from vbraille.braille.geometry import Geometry
 from vbraille.errors import InputError, check_range
 from vbraille.render import work
-from vbraille.render.braille.dots import Profile, Tuning, coefficients
-from vbraille.render.braille.mappings import Mapping
+from vbraille.render.braille.mappings import DOT_BITS, Mapping
 from vbraille.render.work import ProgramKind
 from vbraille.wording import nearest
 
@@ -26,6 +37,61 @@ if TYPE_CHECKING:
     from vbraille.render.program import Program
 
 
+# The kernels' polynomial of T_k has six coefficients; finer texture than this is below what the
+# source's encoders resolve.
+MOST_TEXTURE_CYCLES = 11
+
+
+@dataclass(frozen=True, slots=True)
+class Tuning:
+    """Texture and contrast of braille, which a reader may change while reading.
+
+    Parameters
+    ----------
+    texture
+        Level T in [0, 1], from no texture to what Lévesque 2009 calls "textured" (VBD) or to the
+        texture alone (STReSS², eq. 4.3).
+    contrast
+        Share of the full swing, in [0, 1].
+    cycles
+        Half-cycles of texture in a dot's radius, k of eq. 4.2; an odd number, so that the waveform
+        meets rest at both edges. The VBD does not use it.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    texture: float = 0.0
+    contrast: float = 1.0
+    cycles: int = 7
+
+    def __post_init__(self) -> None:
+        for name in ("texture", "contrast"):
+            check_range(name, getattr(self, name), 0, 1)
+        if self.cycles % 2 != 1 or not 1 <= self.cycles <= MOST_TEXTURE_CYCLES:
+            raise ValueError(
+                f"texture cycles are {self.cycles}; "
+                f"they must be an odd number, 1 to {MOST_TEXTURE_CYCLES}"
+            )
+
+
+class Profile(IntEnum):
+    """Swing of the deflection across a dot."""
+
+    HALF_SINE = 0
+    """The profile of the VBD: Lévesque 2009, 3.2; its texture's phase and norm are our choice."""
+    RAISED_COSINE = 1
+    """The profile of the STReSS²: Lévesque 2009, eqs. 4.1-4.3."""
+
+    def texture_period_mm(self, dot_width_mm: float, cycles: int) -> float:
+        """Tell the wavelength of the texture along x, in mm."""
+        if self is Profile.HALF_SINE:
+            return dot_width_mm / 4
+        return dot_width_mm / cycles
+
+
 # How an array is read that does not stand where the line has its dots, as options name it.
 Manner = Literal["line", "free"]
 MANNERS: Final[tuple[Manner, ...]] = ("line", "free")
@@ -33,6 +99,7 @@ MANNERS: Final[tuple[Manner, ...]] = ("line", "free")
 # Measured with hands that drift: `python -m tests.benchmarks straying`, and docs/measured.md.
 BAND: Final = 0.25
 BAND_BOUNDS: Final = (0.0, 0.9)
+_EIGHT_DOTS = 0xC0  # dots 7 and 8, which make a fourth row
 # Farther turned than this, an array shows no braille. Measured likewise, in the same table: the
 # ends of a row of actuators then lie over another row of dots than the one that they show.
 MOST_TILT_RAD: Final = math.radians(20.0)
@@ -214,64 +281,119 @@ class BrailleStyle:
         hysteresis = self.straying.band if hysteresis is None else hysteresis
         if not 0 <= hysteresis <= 1:
             raise ValueError(f"the hysteresis is {hysteresis:g}; it must be 0 to 1 line pitches")
-        program = self._compile(lines, display, ProgramKind.PAGE)
-        program.numbers[work.LINES] = len(lines)
-        program.numbers[work.HYSTERESIS] = hysteresis
-        return self._freed(program, lines) if self.straying.manner == "free" else program
-
-    def _freed(self, page: Program, lines: Sequence[NDArray[np.uint8]]) -> Program:
-        """Have each actuator of a page show what lies under it, whatever the mapping."""
-        from vbraille.render.braille.packing import pack_cells
-        from vbraille.render.program import Program
-
-        geometry = self.geometry
-        down_mm = geometry.line_pitch_mm / 2 - geometry.row_spacing_mm - geometry.dot_width_mm / 2
-        place = (0.0, down_mm, 0.0)
-        cells = pack_cells(lines, geometry, self.profile, self.tuning, place)
-        numbers = page.numbers.copy()
-        numbers[work.FREE] = 1.0
-        return Program(np.concatenate([numbers, cells.numbers]), cells.table)
-
-    def room(self, display: Display, cells: int, lines: int = 1) -> int:
-        """Tell how many bytes a program of so many lines and cells takes; each is at least 1."""
-        numbers = work.IDLE + 2 * display.rows
-        return numbers * 8 + (lines + 2) * 2 * (cells + 2) * 2
+        return self._compile(lines, display, ProgramKind.PAGE, hysteresis)
 
     def _compile(
-        self, lines: Sequence[NDArray[np.uint8]], display: Display, kind: ProgramKind
+        self,
+        lines: Sequence[NDArray[np.uint8]],
+        display: Display,
+        kind: ProgramKind,
+        hysteresis: float = 0.0,
     ) -> Program:
         # This import compiles the kernels, which a command that renders nothing must not wait for.
         from vbraille.render.program import Program, head
 
-        geometry, tuning = self.geometry, self.tuning
-        own = self.rows_on(display)
-        slots = 2 * (max(len(masks) for masks in lines) + 2)
-        numbers = head(display, kind, work.IDLE + 2 * display.rows, geometry.line_pitch_mm / 2)
-        numbers[work.ANCHOR] = display.span_mm / 2
-        numbers[work.COLUMN_PITCH] = display.column_pitch_mm
-        numbers[work.ROW_PITCH] = display.row_pitch_mm
-        numbers[work.LINE_PITCH] = geometry.line_pitch_mm
-        numbers[work.SLOTS] = slots
-        numbers[work.CELLS_PER_MM] = 1 / geometry.cell_pitch_mm
-        numbers[work.CELL_PITCH] = geometry.cell_pitch_mm
-        numbers[work.DOTS_PER_MM] = 1 / geometry.dot_width_mm
-        numbers[work.DOT_SPACING] = geometry.dot_spacing_mm
-        numbers[work.PROFILE] = self.profile
-        numbers[work.OVERLAP] = geometry.dot_width_mm > min(
-            geometry.dot_spacing_mm, geometry.cell_gap_mm
-        )
-        numbers[work.DOT_ROW_PITCH] = geometry.row_spacing_mm
+        geometry, own = self.geometry, self.rows_on(display)
+        is_free = kind is ProgramKind.PAGE and self.straying.manner == "free"
+        bits = DOT_BITS if is_free else self.mapping.row_bits() << own.start
+        down_mm = geometry.line_pitch_mm / 2 - geometry.row_spacing_mm - geometry.dot_width_mm / 2
+        cells, table = pack_cells(lines, self, bits, (0.0, down_mm, 0.0))
+        numbers = head(display, kind, work.CELLS, geometry.line_pitch_mm / 2)
         numbers[work.TILT] = MOST_TILT_RAD
-        numbers[work.SHAPE : work.SHAPE + 6] = coefficients(self.profile, tuning)
-        idle = self.mapping.idle()
-        numbers[work.IDLE : work.IDLE + display.rows][own] = idle
-        numbers[work.IDLE + display.rows :][own] = tuning.contrast * (1 - 2 * idle)
-        page = kind is ProgramKind.PAGE
-        bits = self.mapping.row_bits() << own.start
-        table = np.zeros((len(lines) + 2 * page, slots), np.uint16)
-        for row, masks in zip(table[page:], lines, strict=False):
-            row[2 : 2 + 2 * len(masks)] = bits[masks].ravel()
-        return Program(numbers, table.ravel())
+        numbers[work.HYSTERESIS], numbers[work.FREE] = hysteresis, is_free
+        idle, gain = np.zeros((2, display.rows))
+        idle[own] = self.mapping.idle()
+        gain[own] = self.tuning.contrast * (1 - 2 * idle[own])
+        return Program(np.concatenate([numbers, cells, idle, gain]), table)
+
+
+def cells_size_mm(lines: Sequence[NDArray[np.uint8]], geometry: Geometry) -> tuple[float, float]:
+    """Width and height of the rectangle of cells, in mm; 0, 0 without cells."""
+    cells = max((len(masks) for masks in lines), default=0)
+    if cells == 0:
+        return 0.0, 0.0
+    rows = work.LAST_ROW + any(bool(np.any(masks & _EIGHT_DOTS)) for masks in lines)
+    down_mm = (len(lines) - 1) * geometry.line_pitch_mm + (rows - 1) * geometry.row_spacing_mm
+    return geometry.extent_mm(cells), down_mm + geometry.dot_width_mm
+
+
+def pack_cells(
+    lines: Sequence[NDArray[np.uint8]],
+    style: BrailleStyle,
+    bits: NDArray[np.uint16],
+    place: tuple[float, float, float],
+) -> tuple[NDArray[np.float64], NDArray[np.uint16]]:
+    """Make the numbers and the words of lines of cells for the kernels.
+
+    Parameters
+    ----------
+    lines : sequence of uint8[n]
+        Dot masks of each line.
+    style
+        Distances, profile and tuning of the dots.
+    bits : uint16[256, 2]
+        Words of the two slots of each possible cell.
+    place
+        Corner of the first cell, in mm, and direction of the lines, in radians.
+
+    Returns
+    -------
+    float64[CELL_NUMBERS], uint16[lines + 2, slots]
+        Numbers at the places that `vbraille.render.work` names, and the words.
+    """
+    geometry, (x_mm, y_mm, angle) = style.geometry, place
+    slots = 2 * (max((len(masks) for masks in lines), default=0) + 2)
+    dot_mm = geometry.dot_width_mm
+    numbers = np.array(
+        (
+            x_mm,
+            y_mm,
+            math.cos(angle),
+            math.sin(angle),
+            *cells_size_mm(lines, geometry),
+            len(lines),
+            geometry.line_pitch_mm,
+            geometry.row_spacing_mm,
+            slots,
+            geometry.cell_pitch_mm,
+            geometry.dot_spacing_mm,
+            dot_mm,
+            0.0,
+            dot_mm <= min(geometry.dot_spacing_mm, geometry.cell_gap_mm),
+            style.tuning.contrast,
+            style.profile,
+            *_coefficients(style.profile, style.tuning),
+        ),
+        np.float64,
+    )
+    table = np.zeros((len(lines) + 2, slots), np.uint16)
+    for row, masks in zip(table[1:], lines, strict=False):
+        row[2 : 2 + 2 * len(masks)] = bits[masks].ravel()
+    return numbers, table.ravel()
+
+
+def _half_sine_peak(level: float) -> float:
+    """Find M(a), the largest value of sin θ + a sin 8θ on [0, π], with a = level / 8."""
+    a = level / 8
+    theta = np.linspace(0, np.pi, 4097)
+    best = theta[np.argmax(np.sin(theta) + a * np.sin(8 * theta))]
+    for _ in range(4):  # Newton, on the derivative
+        slope = np.cos(best) + 8 * a * np.cos(8 * best)
+        best -= slope / (-np.sin(best) - 64 * a * np.sin(8 * best))
+    return float(np.sin(best) + a * np.sin(8 * best))
+
+
+def _coefficients(profile: Profile, tuning: Tuning) -> NDArray[np.float64]:
+    """Compute the coefficients from which the kernels make a dot's profile; float64[6]."""
+    shape = np.zeros(6)
+    if profile is Profile.HALF_SINE:
+        shape[0] = 1 / _half_sine_peak(tuning.texture)
+        shape[1] = tuning.texture * shape[0]  # a = T / 8, and sin 8θ brings a factor of 8
+    else:
+        odd = chebyshev.cheb2poly([0] * tuning.cycles + [1])[1::2]  # coefficients of T_k, k odd
+        shape[: odd.size] = tuning.texture * odd / 2
+        shape[0] += (1 - tuning.texture) / 2
+    return shape
 
 
 # What the fields of a style are, where a program may give something else, and where to find them.

@@ -20,7 +20,7 @@ from vbraille.display import Display
 from vbraille.engine.record import FLAGS, FLOATS, INTS, LINE, Flag
 from vbraille.engine.ticks import recall, replay
 from vbraille.render import work
-from vbraille.render.program import Program, nothing, scratch_for
+from vbraille.render.program import Program, nothing
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import make_shown
 from vbraille.sessions.planning.trial import Stimulus, Trial
@@ -116,7 +116,6 @@ class _Frames:
         frames = np.zeros((ticks.size, *self._shape))
         output, held, target = np.zeros((3, *self._shape))
         at, remembered = np.zeros((2, work.AT))
-        scratch = scratch_for(self._shape)
         ints = np.zeros((ticks.size, len(INTS)), np.int64)
         floats = np.zeros((ticks.size, len(FLOATS)))
         for table, names in ((ints, INTS), (floats, FLOATS)):
@@ -135,7 +134,8 @@ class _Frames:
             part = ints[first:end], floats[first:end]
             recall(program.numbers, *part, remembered)
             into = frames[first:end]
-            replay(program.numbers, program.table, scratch, *part, at, output, held, target, into)
+            arrays = program.numbers, program.table, program.scratch
+            replay(*arrays, *part, at, output, held, target, into)
         return frames
 
 
