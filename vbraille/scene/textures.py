@@ -283,10 +283,8 @@ class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
         if self.ridge_deg + self.gap_deg > 360.0:
             raise ValueError("ridge and gap are more than a turn together; make them smaller")
         inner_mm, outer_mm = self.fade_mm
-        if not 0.0 <= inner_mm < outer_mm <= 100.0:
+        if not 0.0 <= inner_mm <= outer_mm - LEAST_APART_MM <= 100.0:
             raise ValueError("fade is from a smaller to a larger length, from 0 to 100 mm")
-        if outer_mm - inner_mm < LEAST_APART_MM:
-            raise ValueError("fade is from a length to the same; set the second larger")
         _check_distortion(self.distortion, self.velocity_deg_s)
 
     @property
