@@ -6,7 +6,7 @@ import numpy as np
 
 from vbraille.display import Display
 from vbraille.render.compiling import SceneMap, compile_scene
-from vbraille.scene.patterns import Circle, Group, StraightLine
+from vbraille.scene.patterns import Circle, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke, Vibration
 from vbraille.scene.textures import LinearGrating, UniformVibration
@@ -62,11 +62,3 @@ def test_opacity_is_what_hides():
     assert np.array_equal(of_weak, of_full)
     both = SceneMap(Scene(canvas=CANVAS, operation="add", elements=(weak, weak))).opacity(x, y)
     assert np.allclose(both, np.minimum(2 * of_weak, 1))
-
-
-def test_fine_and_coarse_rasters_agree():
-    whole = SceneMap(Scene(canvas=CANVAS, elements=(Group(parts=SCENE.elements),)))
-    x, y = np.linspace(0, 6, 1200), np.linspace(0, 4, 7)
-    fine = whole.deflections(x, y)
-    assert np.array_equal(fine[:, ::100], whole.deflections(x[::100], y))
-    assert whole.deflections(x[:0], y).shape == (7, 0)
