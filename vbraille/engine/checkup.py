@@ -416,7 +416,7 @@ class _Check:
         poll_ticks = max(round(rate_hz / 4), 1)
         engine = LocalEngine(device, self._clock, rate_hz=rate_hz, poll_ticks=poll_ticks)
         # All actuators swell and sink, once a second.
-        engine.show(vibration(device.display, 1.0, exposure_s=math.inf))
+        engine.show(vibration(device.display, 1.0))
         engine.start()
         polled = []
         while engine.tally.ticks + engine.tally.late < seconds * rate_hz:

@@ -230,7 +230,9 @@ class SceneIndex:
             for low, high in ((box.left, box.right), (box.top, box.bottom))
             for count in [min(max(int((high - low) / _STEP_MM), 1), _MOST_STEPS)]
         )
-        shown = SceneMap(scene, self._assets).opacity(x_mm, y_mm, switches=self.switches)
+        shown = SceneMap(scene, self._assets).deflections(
+            x_mm, y_mm, is_mask=True, switches=self.switches
+        )
         felt = shown >= min(_FELT, max(float(shown.max()) / 2, _TRACE))
         rows, columns = np.nonzero(felt)
         return np.stack((x_mm[columns], y_mm[rows]), axis=1)
@@ -257,7 +259,7 @@ class SceneIndex:
     def opacity(self, number: int, x_mm: float, y_mm: float) -> float:
         """Tell how much of what lies below a part, by its number, it hides at a place: 0 … 1."""
         shown, at = self._map_of(number), (np.array([x_mm]), np.array([y_mm]))
-        return float(shown.opacity(*at, switches=self.switches)[0, 0])
+        return float(shown.deflections(*at, is_mask=True, switches=self.switches)[0, 0])
 
     def find(self, text: str) -> NamedElement | None:
         """Find an element by its id or title, or by what one of these begins with or has in it."""

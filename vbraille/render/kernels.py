@@ -14,7 +14,6 @@ from vbraille.render.signalkernels import begin, compute
 from vbraille.render.waves import compiled as _compiled
 from vbraille.render.waves import phase, swung
 from vbraille.render.work import (
-    AMPLITUDE,
     APART,
     AT,
     CELL_NUMBERS,
@@ -24,11 +23,13 @@ from vbraille.render.work import (
     COLUMNS,
     FREE,
     FREQUENCY,
+    GIVEN_ROW,
     HYSTERESIS,
     KIND,
     LINE_PITCH,
     LINES,
     MEMORY,
+    MOST_SIGNALS,
     NO_PART,
     ORIGIN_X,
     ORIGIN_Y,
@@ -36,6 +37,7 @@ from vbraille.render.work import (
     ROW_PITCH,
     ROWS,
     SIGN_ROW,
+    SIGNAL,
     SLOT,
     SLOTS,
     SWING,
@@ -132,7 +134,7 @@ def frame(numbers, table, scratch, part, at, out):
     # Compiled code would otherwise read beyond the numbers.
     if rows != numbers[ROWS] or columns != numbers[COLUMNS]:
         raise ValueError("the frame has not the shape of the array")
-    kind, amplitude = numbers[KIND], numbers[AMPLITUDE]
+    kind = numbers[KIND]
     x0, y0 = numbers[ORIGIN_X] + at[X], numbers[ORIGIN_Y] + at[Y]
     cosine, sine = math.cos(at[THETA]), math.sin(at[THETA])
     pitch, row_pitch, center = numbers[COLUMN_PITCH], numbers[ROW_PITCH], numbers[CENTER]
@@ -147,11 +149,14 @@ def frame(numbers, table, scratch, part, at, out):
             scratch[X_ROW, n], scratch[Y_ROW, n], scratch[SIGN_ROW, n] = x, y, sign
             n += 1
             if kind == _VIBRATION:
-                out[row, column] = amplitude * swung(1.0, sign * swing)
+                out[row, column] = swung(1.0, sign * swing)
             elif kind == _PAGE and numbers[FREE] != 0.0:
                 out[row, column] = highest_dot(numbers[CELLS:], table, x, y)
     if kind == SCENE:
-        show(numbers, table, scratch, at, out)
+        for k in range(MOST_SIGNALS):
+            scratch[GIVEN_ROW, k] = at[SIGNAL + k]
+        scratch[GIVEN_ROW, MOST_SIGNALS], scratch[GIVEN_ROW, MOST_SIGNALS + 1] = x0, y0
+        show(numbers, table, scratch, at[TIME], out)
     elif kind != _VIBRATION and not seamless(numbers):
         for which in _columns_of_dots(numbers):
             find_dots(numbers[CELLS:], scratch, n, which)
@@ -165,9 +170,7 @@ def path(numbers, table, scratch, x_mm, out):
     The places of a block are computed by vector instructions, which is several times as fast as
     calling `frame` for each.
     """
-    rows, columns = out.shape[1:]
-    if rows != numbers[ROWS] or columns != numbers[COLUMNS]:
-        raise ValueError("the frames have not the shape of the array")
+    columns = out.shape[2]
     block = scratch.shape[1] // columns
     for first in range(0, x_mm.size, block):
         count = min(block, x_mm.size - first)

@@ -30,7 +30,9 @@ def test_a_map_of_opacity_is_what_the_twin_says(pattern, seed):
     assets = assets_of(pattern)
     x, y = np.sort(rng.uniform(0, 60, 13)), rng.uniform(0, 60, 7)
     time_s, parity = float(rng.uniform(0, 10)), int(rng.integers(2))
-    got = SceneMap(scene_of(pattern), assets).opacity(x, y, time_s=time_s, parity=parity)
+    got = SceneMap(scene_of(pattern), assets).deflections(
+        x, y, is_mask=True, time_s=time_s, parity=parity
+    )
     right, down = (grid.ravel() for grid in np.meshgrid(x, y))
     want = reference.opacity(pattern, assets, right, down, parity, time_s)
     np.testing.assert_allclose(got.ravel(), want, rtol=0, atol=1e-6)
