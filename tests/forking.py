@@ -84,7 +84,6 @@ class Nursery:
             and isinstance(command, list)
             and command[:2] == [sys.executable, "-m"]
             and str(command[2]).partition(".")[0] == "vbraille"
-            and command[2] != "vbraille.engine.compiling"
             and asked["executable"] in (None, sys.executable)
             and asked["preexec_fn"] is None
             and asked["close_fds"]

@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+import math
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from vbraille.devices.calibration import Calibration
+from vbraille.engine.constants import FADE_S, NS_PER_S
+
+if TYPE_CHECKING:
+    from vbraille.devices.base import Device
+    from vbraille.engine.clock import Clock
 
 KEYS = {
     "y or Enter": "it is well; next actuator",
@@ -18,6 +26,7 @@ KEYS = {
     "q": "leave",
 }
 _STEP = _LEAST = 0.05
+_SWINGS_S = 4.0  # a second each
 
 
 class CalibrationRound:
@@ -66,20 +75,8 @@ class CalibrationRound:
     def press(self, key: str) -> list[str]:
         """Obey a key; lines on what happened."""
         gain = float(self._gains[self.place])
+        steps = {"p": -1, "left": -1, "i": 0, "+": 0, "=": 0, "-": 0}.get(key, 1)
         match key:
-            case "y" | "\n" | "\r" | "enter" | "n" | "right":
-                self._gains[self.place] = gain or float(key not in ("n", "right"))
-                return self._go(1)
-            case "p" | "left":
-                return self._go(-1)
-            case "d":
-                self._gains[self.place] = 0.0
-                return self._go(1)
-            case "i":
-                self._gains[self.place] = -gain or 1.0
-            case "+" | "=" | "-":
-                size = round(abs(gain) + (-_STEP if key == "-" else _STEP), 2)
-                self._gains[self.place] = np.copysign(min(max(size, _LEAST), 1.0), gain)
             case " " | "space":
                 return []
             case "s":
@@ -89,13 +86,22 @@ class CalibrationRound:
             case "q" | "escape":
                 self.left = True
                 return []
+            case "y" | "\n" | "\r" | "enter":
+                gain = gain or 1.0
+            case "d":
+                gain = 0.0
+            case "i":
+                gain = -gain or 1.0
+            case "+" | "=" | "-":
+                size = round(abs(gain) + (-_STEP if key == "-" else _STEP), 2)
+                gain = math.copysign(min(max(size, _LEAST), 1.0), gain)
+            case "n" | "right" | "p" | "left":
+                pass
             case _:
                 return ["press h for the keys"]
-        return [_said(self._gains[self.place])]
-
-    def _go(self, steps: int) -> list[str]:
+        self._gains[self.place] = gain
         self._number = (self._number + steps) % self._gains.size
-        return [self.said()]
+        return [self.said() if steps else _said(gain)]
 
 
 def gains_said(calibration: Calibration) -> list[str]:
@@ -114,3 +120,63 @@ def _said(gain: float) -> str:
     if gain == 0:
         return "dead"
     return f"gain {100 * abs(gain):.0f} %{', inverted' if gain < 0 else ''}"
+
+
+class ActuatorSwings:
+    """An actuator of a device that swings out and back for some seconds, and then rests.
+
+    Parameters
+    ----------
+    device
+        Open device.
+    clock
+        Clock by which ticks are due.
+    """
+
+    def __init__(self, device: Device, clock: Clock) -> None:
+        self._device, self._clock = device, clock
+        self._rate_hz = device.display.rate_hz
+        self._left_s = 0.0
+        self._frame, self._at = np.zeros(device.display.shape), (0, 0)
+        self._due_ns = clock.now_ns()
+        self._was = device.rested, device.taking
+
+    def swing(self, place: tuple[int, int]) -> None:
+        """Have an actuator swing, by its row and column, once all rest."""
+        self._at, self._left_s = place, _SWINGS_S
+
+    def tick(self) -> None:
+        """Wait for the next frame's time, read the device, and send the frame.
+
+        Raises
+        ------
+        DeviceError
+            If the device is gone for good.
+        """
+        now = self._device.rested, self._device.taking
+        if now != self._was:  # it has gone to rest by itself, or leaves it: begin again from there
+            self._was, self._left_s = now, _SWINGS_S if self._left_s else 0.0
+        self._left_s = max(self._left_s - 1 / self._rate_hz, 0.0)
+        self._frame[self._at] = math.sin(math.pi * self._left_s) ** 2
+        self._send()
+
+    def rest(self) -> None:
+        """Fade to rest.
+
+        Raises
+        ------
+        DeviceError
+            If the device is gone for good.
+        """
+        self._left_s = 0.0
+        step = 1 / max(FADE_S * self._rate_hz, 1)
+        while self._frame.any() or self._device.moving:
+            self._frame[:] = np.maximum(self._frame - step, 0.0)
+            self._send()
+
+    def _send(self) -> None:
+        period_ns = round(NS_PER_S / self._rate_hz)
+        self._due_ns = max(self._due_ns + period_ns, self._clock.now_ns() - period_ns)
+        self._clock.sleep_until_ns(self._due_ns)
+        self._device.read()
+        self._device.write(self._frame)

@@ -18,11 +18,8 @@ import numpy as np
 from vbraille.devices.events import Placing, WatchdogTripped, shown_place, told
 from vbraille.devices.protocol import RAMP_MS, REST_MS, WATCHDOG_MS
 from vbraille.display import Pose
-from vbraille.engine.constants import FADE_S, JUMP_MM_S, NS_PER_S
-from vbraille.engine.hostprocess import warm_up
-from vbraille.engine.loop import LocalEngine
+from vbraille.engine.constants import JUMP_MM_S, NS_PER_S
 from vbraille.errors import DeviceError
-from vbraille.render.program import vibration
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -33,7 +30,6 @@ if TYPE_CHECKING:
     from vbraille.engine.clock import Clock
 
 _RATE_S = 3.0
-_ROUND_TRIPS_S = 1.0
 _MOST_ROUND_TRIP_MS = 4.0  # a hand at 70 mm/s goes a tenth of a dot in 4 ms
 _HELD_PERIODS = 3  # poses that come so far apart, and none was lost, were held back
 _MOST_LATE = 0.01  # as a share of all ticks
@@ -49,6 +45,17 @@ _SWING_S = 0.25
 _HELD, _HOLD_S = 0.3, 0.1  # how far actuators go before a watchdog is left without frames
 _MOST_OF_TICK = 0.5  # for a driver's read and write together, as a share of a tick
 _PARTS = 5  # frames of which a line takes a part at first
+_TICK = np.dtype(
+    [
+        ("late_ns", "<i8"),  # from when the tick was due to when it began
+        ("host_ns", "<i8"),  # the part of it that this computer alone is to blame for
+        ("work_ns", "<i8"),  # to read and to write
+        ("came_ns", "<i8"),  # when a pose came, by this computer's clock
+        ("device_ns", "<i8"),  # and by the device's
+        ("x_mm", "<f8"),  # NaN without one
+        ("taken_ns", "<f8"),  # how long a frame took to be acknowledged; NaN if that is not known
+    ]
+)
 _LATENCY = (
     "set the latency timer of its adapter to 1 ms (echo 1 | sudo tee "
     "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer), as docs/building.md says"
@@ -238,79 +245,6 @@ def finishes_parts(device: Device) -> list[str]:
     return faults
 
 
-class ActuatorSwings:
-    """An actuator of a device that swings out and back some times, and then rests.
-
-    Parameters
-    ----------
-    device
-        Open device.
-    clock
-        Clock by which ticks are due.
-    swing_s
-        Time of a swing, out and back, in seconds.
-    swings
-        How often an actuator swings.
-
-    Attributes
-    ----------
-    left : int
-        Number of ticks for which the actuator in turn still swings.
-    """
-
-    def __init__(self, device: Device, clock: Clock, swing_s: float = 1.0, swings: int = 4) -> None:
-        self._device, self._clock = device, clock
-        self._rate_hz = device.display.rate_hz
-        self._steps = round(swing_s * self._rate_hz)
-        self._all = self._steps * swings
-        self.left = 0
-        self._frame = np.zeros(device.display.shape)
-        self._at = 0, 0
-        self._due_ns = clock.now_ns()
-        self._was = device.rested, device.taking
-
-    def swing(self, place: tuple[int, int]) -> None:
-        """Have another actuator swing, by its row and column; the one before rests at once."""
-        self._frame[:] = 0.0
-        self._at, self.left = place, self._all
-
-    def tick(self) -> None:
-        """Wait for the next frame's time, read the device, and send the frame.
-
-        Raises
-        ------
-        DeviceError
-            If the device is gone for good.
-        """
-        now = self._device.rested, self._device.taking
-        if now != self._was:  # it has gone to rest by itself, or leaves it: begin again from there
-            self._was, self.left = now, self._all if self.left else 0
-        self.left = max(self.left - 1, 0)
-        self._frame[self._at] = math.sin(math.pi * self.left / self._steps) ** 2
-        self._send(self._frame)
-
-    def rest(self) -> None:
-        """Fade to rest.
-
-        Raises
-        ------
-        DeviceError
-            If the device is gone for good.
-        """
-        self.left = 0
-        steps = round(FADE_S * self._rate_hz)
-        while self._frame.any() or self._device.moving:
-            self._frame[:] = np.maximum(self._frame - 1 / max(steps, 1), 0.0)
-            self._send(self._frame)
-
-    def _send(self, frame: NDArray[np.float64]) -> None:
-        period_ns = round(NS_PER_S / self._rate_hz)
-        self._due_ns = max(self._due_ns + period_ns, self._clock.now_ns() - period_ns)
-        self._clock.sleep_until_ns(self._due_ns)
-        self._device.read()
-        self._device.write(frame)
-
-
 def check(
     device: Device, clock: Clock, say: Callable[[str], None], *, rate_s: float = _RATE_S
 ) -> Checkup:
@@ -330,8 +264,6 @@ def check(
     DeviceError
         If the device is gone, or gives no place within a minute.
     """
-    warm_up(device.display)
-    device.read()  # what came meanwhile
     return _Check(device, clock, say).run(rate_s)
 
 
@@ -342,7 +274,7 @@ class _Check:
         self._watch = Watch(device, clock)
         self._device: Any = self._watch  # to all others it is the device
         self._clock, self._say = clock, say
-        self._period_ns = round(NS_PER_S / device.display.rate_hz)
+        self._rate_hz = device.display.rate_hz
         self._counted = dict(device.counts())  # before
         self._shown = False  # whether its place was chosen here, and says nothing
         self._found = Checkup()
@@ -350,7 +282,9 @@ class _Check:
     def run(self, rate_s: float) -> Checkup:
         device, found = self._device, self._found
         self._wait_for_place()
-        self._swing_each()
+        for row, column in np.ndindex(*device.display.shape):
+            self._say(f"actuator: row {row + 1}, column {column + 1}")
+            self._drive(_SWING_S, lambda share: math.sin(math.pi * share), (row, column))
         self._hold_rate(rate_s)
         found.wrong += [*self._rate(), *self._time(), *self._place(), *self._round_trips()]
         counts = device.counts().items()
@@ -400,85 +334,87 @@ class _Check:
                 raise DeviceError(f"{device.display.name} gives no place; look at its encoder")
             clock.sleep_until_ns(clock.now_ns() + 1_000_000)
 
-    def _swing_each(self) -> None:
-        """Swing one actuator after the other; one that keeps going to rest is given up at last."""
-        swings = ActuatorSwings(self._device, self._clock, _SWING_S, 1)
-        for row, column in np.ndindex(*self._device.display.shape):
-            self._say(f"actuator: row {row + 1}, column {column + 1}")
-            swings.swing((row, column))
-            for _ in range(8 * swings.left):
-                if swings.left:
-                    swings.tick()
+    def _drive(
+        self, seconds: float, level: Callable[[float], float], at: Any = slice(None)
+    ) -> NDArray[np.void]:
+        """Send frames for a while, at the device's rate.
+
+        Parameters
+        ----------
+        seconds
+            How long.
+        level
+            Deflection at a share of that time; from where the device went to rest by itself it is
+            0, so that nothing jumps.
+        at
+            Actuators that have it; the others rest.
+
+        Returns
+        -------
+        _TICK[n]
+            What was measured in each tick.
+        """
+        device, clock, rate_hz = self._device, self._clock, self._rate_hz
+        period_ns = round(NS_PER_S / rate_hz)
+        frame, was = np.zeros(device.display.shape), (device.rested, device.taking)
+        ticks = np.zeros(max(round(seconds * rate_hz), 2), _TICK)
+        due_ns = clock.now_ns()
+        for n, tick in enumerate(ticks):
+            due_ns, begun_ns = due_ns + period_ns, clock.now_ns()
+            clock.sleep_until_ns(due_ns)
+            woke_ns = clock.now_ns()
+            sample = device.read() or Pose(0, math.nan)
+            frame[at] = level(n / ticks.size) * ((device.rested, device.taking) == was)
+            device.write(frame)
+            done_ns, taken_ns = clock.now_ns(), device.acknowledged_ns
+            tick["late_ns"], tick["host_ns"] = woke_ns - due_ns, woke_ns - max(due_ns, begun_ns)
+            tick["work_ns"], tick["came_ns"] = done_ns - woke_ns, woke_ns
+            tick["device_ns"], tick["x_mm"] = sample[:2]
+            tick["taken_ns"] = math.nan if taken_ns is None else taken_ns
+            due_ns = max(due_ns, done_ns - period_ns)  # what is late is not caught up with
+        return ticks
 
     def _hold_rate(self, seconds: float) -> None:
-        """Drive the device at its rate, as reading does, for a number of seconds."""
-        device, found, rate_hz = self._device, self._found, self._device.display.rate_hz
-        poll_ticks = max(round(rate_hz / 4), 1)
-        engine = LocalEngine(device, self._clock, rate_hz=rate_hz, poll_ticks=poll_ticks)
-        # All actuators swell and sink, once a second.
-        engine.show(vibration(device.display, 1.0))
-        engine.start()
-        polled = []
-        while engine.tally.ticks + engine.tally.late < seconds * rate_hz:
-            polled.append(engine.poll())
-        found.ticks, found.late = engine.tally.ticks, engine.tally.late
-        engine.show(None)
-        engine.poll()  # it fades to rest
-        ticks = np.concatenate(polled)
+        """Drive the device at its rate for some seconds; all actuators swell and sink."""
+        found, period_ms = self._found, 1e3 / self._rate_hz
+        times = max(round(seconds), 1)
+        ticks = self._drive(seconds, lambda share: math.sin(math.pi * times * share) ** 2)
+        found.ticks, found.late = ticks.size, int((ticks["late_ns"] > period_ms * 1e6).sum())
         found.work_us = tuple(np.percentile(ticks["work_ns"] / 1e3, (50, 99)).tolist())
+        found.host_ms = float(ticks["host_ns"].max()) / 1e6
+        taken_ms = ticks["taken_ns"][~np.isnan(ticks["taken_ns"])] / 1e6
+        if taken_ms.size:
+            found.round_trips_ms = np.percentile(taken_ms, (1, 50, 99)).tolist()
         known = ticks[~np.isnan(ticks["x_mm"])]
-        new = known[np.diff(known["device_ns"], prepend=-1) > 0]
-        if new.size < 2:
+        if known.size < 4:
             return
         found.x_mm = float(known["x_mm"].min()), float(known["x_mm"].max())
-        arrived, taken = np.diff(new["time_ns"]) / 1e6, np.diff(new["device_ns"]) / 1e6
-        period_ms = 1e3 / rate_hz
+        arrived, taken = np.diff(known["came_ns"]) / 1e6, np.diff(known["device_ns"]) / 1e6
         usual_ms = float(np.median(arrived))
         found.held_ms = usual_ms if usual_ms > _HELD_PERIODS * period_ms else 0.0
         found.line_ms = max(float((arrived - taken).max()), 0.0)
         if not found.held_ms:
             found.device_ms = max(float(taken.max()) - period_ms, 0.0)
-        # How far the device's clock is ahead in the first third of the samples and in the last:
-        # by medians, so that samples that came late, as after a stall, weigh little.
-        third = max(known.size // 3, 1)
-        (first_ns, first_ahead), (last_ns, last_ahead) = (
-            (np.median(part["time_ns"]), np.median(part["device_ns"] - part["time_ns"]))
-            for part in (known[:third], known[-third:])
-        )
-        found.clock_s = float(1 + (last_ahead - first_ahead) / max(last_ns - first_ns, 1))
-
-    def _frames(self, level: float, to: float, seconds: float) -> Iterator[None]:
-        """Send frames that go from one deflection to another; gives control after each.
-
-        On the way the greatest lateness of this computer alone is measured.
-        """
-        clock, shape = self._clock, self._device.display.shape
-        due_ns = clock.now_ns()
-        for share in np.linspace(0, 1, max(round(seconds * NS_PER_S / self._period_ns), 2)):
-            due_ns += self._period_ns
-            due_ns = max(due_ns, clock.now_ns())
-            clock.sleep_until_ns(due_ns)
-            self._found.host_ms = max(self._found.host_ms, (clock.now_ns() - due_ns) / 1e6)
-            self._device.read()
-            self._device.write(np.full(shape, level + (to - level) * share))
-            yield
+        # Over half of the time each, and their median: samples that came late weigh little.
+        half = known.size // 2
+        passed = {
+            name: known[name][half:] - known[name][:-half] for name in ("came_ns", "device_ns")
+        }
+        found.clock_s = float(np.median(passed["device_ns"] / np.maximum(passed["came_ns"], 1)))
 
     def _rate(self) -> list[str]:
         found = self._found
-        due = found.ticks + found.late
-        self._say(f"rate: {self._device.display.rate_hz:g} Hz, {found.late} of {due} ticks late")
+        self._say(f"rate: {self._rate_hz:g} Hz, {found.late} of {found.ticks} ticks late")
         median_us, most_us = found.work_us
         self._say(f"work: median {median_us:.0f} µs, 99 % under {most_us:.0f} µs")
-        for _ in self._frames(0.0, 0.0, _HOLD_S):
-            pass
         self._say(
             f"late: this computer by {found.host_ms:.1f} ms at most, the device by "
             f"{found.device_ms:.1f} ms, the line by {found.line_ms:.1f} ms"
         )
         if found.held_ms:
             return [f"the line holds bytes back for {found.held_ms:.0f} ms; {_LATENCY}"]
-        if found.late / due > _MOST_LATE:
-            return [f"{found.late / due:.1%} of the ticks come late on this computer"]
+        if found.late / found.ticks > _MOST_LATE:
+            return [f"{found.late / found.ticks:.1%} of the ticks come late on this computer"]
         return []
 
     def _time(self) -> list[str]:
@@ -513,16 +449,13 @@ class _Check:
         return []
 
     def _round_trips(self) -> list[str]:
-        device = self._device
-        if not device.acknowledges:
+        if not self._device.acknowledges:
             self._say("round trip: not tested, since this device does not say what it has taken")
             return []
-        told = [device.acknowledged_ns for _ in self._frames(0.0, 0.0, _ROUND_TRIPS_S)]
-        taken = [now_ns / 1e6 for now_ns in told if now_ns is not None]
-        if not taken:
+        if not self._found.round_trips_ms:
             self._say("round trip: none, for no frame was acknowledged")
             return ["it acknowledges none of the frames that it is sent"]
-        low, median, high = self._found.round_trips_ms = np.percentile(taken, (1, 50, 99)).tolist()
+        low, median, high = self._found.round_trips_ms
         self._say(f"round trip: median {median:.2f} ms, 98 % within {low:.2f} to {high:.2f} ms")
         if median <= _MOST_ROUND_TRIP_MS or self._found.held_ms:
             return []
@@ -557,9 +490,8 @@ class _Check:
     def _trip_ms(self) -> float | None:
         """Send nothing, with the actuators off their rest, until the device's watchdog trips."""
         device, clock = self._device, self._clock
-        for level, to in ((0.0, 0.0), (0.0, _HELD), (_HELD, _HELD)):
-            for _ in self._frames(level, to, _HOLD_S):
-                pass
+        # It takes frames again, and the actuators go out and stay there for half of the time.
+        self._drive(3 * _HOLD_S, lambda share: _HELD * min(max(4 * share - 1, 0), 1))
         trips = device.watchdog_trips
         # It is not read meanwhile either: a host that owes frames tells the device to rest.
         clock.sleep_until_ns(clock.now_ns() + round(_TRIP_PATIENCE_S * NS_PER_S))
@@ -570,6 +502,5 @@ class _Check:
                 taken_ms = device.tripped_ms
                 break
             clock.sleep_until_ns(clock.now_ns() + 1_000_000)
-        for _ in self._frames(0.0, 0.0, 2 * _HOLD_S):  # it rests by now, and takes frames again
-            pass
+        self._drive(2 * _HOLD_S, lambda _: 0.0)  # it rests by now
         return taken_ms

@@ -4,29 +4,13 @@ from __future__ import annotations
 
 import select
 import time
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 # Python needs so long to come back from a sleep, and is woken so much earlier.
 _RETURN_NS = 6_000
-
-
-class Clock(Protocol):
-    """A clock of nanoseconds that never goes back."""
-
-    def now_ns(self) -> int:
-        """Time since some fixed moment."""
-        ...
-
-    def sleep_until_ns(self, deadline_ns: int) -> None:
-        """Return at the deadline, or at once if it has passed."""
-        ...
-
-    def wait_ns(self, descriptors: Sequence[int], deadline_ns: int) -> list[int]:
-        """Return once a descriptor can be read, or at the deadline; give those that can."""
-        ...
 
 
 class RealClock:
@@ -74,3 +58,6 @@ class ManualClock:
     def advance_ns(self, step_ns: int) -> None:
         """Turn the clock on."""
         self._now_ns += step_ns
+
+
+Clock = RealClock | ManualClock

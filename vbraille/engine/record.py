@@ -78,17 +78,10 @@ def columns_of(
     int64[n, INTS], float64[n, FLOATS], float32[n, rows, columns]
         Views of the records' memory; their types do not depend on the frame's shape.
     """
-    step = records.itemsize
-    assert records.dtype.fields is not None
-    offsets = {name: field[1] for name, field in records.dtype.fields.items()}
+    from numpy.lib.recfunctions import structured_to_unstructured  # loads numpy.ma
 
-    def view(dtype: type, names: tuple[str, ...]) -> NDArray:
-        start = offsets[names[0]]
-        return np.ndarray(
-            (records.size, len(names)), dtype, records.data, start, (step, np.dtype(dtype).itemsize)
-        )
-
-    return view(np.int64, INTS), view(np.float64, FLOATS), records["frame"]
+    ints, floats = (structured_to_unstructured(records[list(names)]) for names in (INTS, FLOATS))
+    return ints, floats, records["frame"]
 
 
 class Tally(NamedTuple):

@@ -17,7 +17,6 @@ from vbraille.render.braille.models import STRESS2_8X8
 from vbraille.render.compiling import SceneMap
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.checking import LEAST_BLANK_MM, frequencies, kind_of
-from vbraille.scene.measures import travel_deg
 from vbraille.scene.patterns import Circle, Dots, Group, Label, PathShape, Polygon
 from vbraille.scene.textures import LinearGrating
 from vbraille.scene.traversal import children, each
@@ -303,7 +302,7 @@ def _shapes(element: AnyPattern) -> Iterator[tuple[AnyPattern, str]]:
         texture = fill.texture
         if isinstance(texture, LinearGrating):
             wave_mm = texture.wave.length
-            angle = math.radians(travel_deg(texture.wave_angle_deg, texture.ridge_angle_deg))
+            angle = math.radians(texture.travel_deg)
             width, height = high - low
             across_mm = abs(width * math.cos(angle)) + abs(height * math.sin(angle))
             if wave_mm > across_mm:

@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING
 
 from vbraille.pictures.words import plain
-from vbraille.scene.measures import travel_deg
 from vbraille.scene.patterns import (
     Circle,
     Dots,
@@ -210,15 +209,10 @@ def _grating_words(grating: LinearGrating | RadialGrating | AxialGrating) -> str
         words = f"rings: {lengths} around {_place(grating.center_mm)}"
         way = "inward" if grating.velocity_mm_s < 0 else "outward"
     else:
-        words = f"{lengths}, the wave at {wave_angle_deg(grating):g}°"
-        way = _way(wave_angle_deg(grating) + 180.0 * (grating.velocity_mm_s < 0))
+        words = f"{lengths}, the wave at {grating.travel_deg:g}°"
+        way = _way(grating.travel_deg + 180.0 * (grating.velocity_mm_s < 0))
     words += _moving_by(grating.velocity_mm_s, way, grating.velocity_by)
     return words if grating.distortion is None else f"{words}, frequency changed"
-
-
-def wave_angle_deg(grating: LinearGrating) -> float:
-    """Direction in which the wave of a grating travels, in degrees from +x towards +y."""
-    return travel_deg(grating.wave_angle_deg, grating.ridge_angle_deg)
 
 
 def _shape_words(shape: StraightLine | Circle | Polygon | PathShape) -> str:

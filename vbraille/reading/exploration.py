@@ -202,7 +202,10 @@ class Exploration:
                 self.press(f"button:{event.number}")
             elif isinstance(event, Knob):
                 self._turn(what, f"knob:{event.number}", event.value)
-        self._settle(what)
+        for knob, (due_s, said) in tuple(self._turned.items()):
+            if time.monotonic() >= due_s:
+                del self._turned[knob]
+                what.say(said)
         if ticks.size:
             what.follow(ticks)
             if what.hopeless is not None and not self._keyboard.attached:
@@ -217,9 +220,3 @@ class Exploration:
             said = what.turn(name, round(share, 2)) if name else ""
         if said:
             self._turned[knob] = time.monotonic() + _SETTLED_S, said
-
-    def _settle(self, what: Explored) -> None:
-        for knob, (due_s, said) in tuple(self._turned.items()):
-            if time.monotonic() >= due_s:
-                del self._turned[knob]
-                what.say(said)

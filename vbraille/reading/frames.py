@@ -93,11 +93,12 @@ class RenderedLine:
         if not 0 < speed_mm_s < math.inf:
             raise InputError(f"speed_mm_s is {speed_mm_s:g}; it must be above 0")
         step_mm = float(self.positions_mm[1] - self.positions_mm[0])
-        model = _shown(self.display, self.style, speed_mm_s / step_mm)
         lines = np.zeros(len(self), np.int64)
         middle_mm = np.full(len(self), self.style.geometry.line_pitch_mm / 2)
         return _recorded(
-            model,
+            self.display,
+            self.style,
+            speed_mm_s / step_mm,
             [self.line],
             self.number,
             self.frames,
@@ -204,8 +205,8 @@ class RenderedPage:
         path = _path(x_mm, y_mm, theta_rad)
         part, frames = self.program.poses(*path)
         line = part.clip(0, len(self.lines) - 1)
-        model = _shown(self.display, self.style, rate_hz)
-        return _recorded(model, self.lines, self.first, frames, path, line, part)
+        how = self.display, self.style, rate_hz
+        return _recorded(*how, self.lines, self.first, frames, path, line, part)
 
 
 def render_text(
@@ -338,25 +339,17 @@ def _path(
     x_mm: ArrayLike, y_mm: ArrayLike, theta_rad: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Places and angles of a path, checked, in arrays of one length; float64[n] each."""
-    try:
-        poses = [np.atleast_1d(np.asarray(of, np.float64)) for of in (x_mm, y_mm, theta_rad)]
-        x, y, theta = (np.ascontiguousarray(of) for of in np.broadcast_arrays(*poses))
-    except (TypeError, ValueError):  # no numbers, or not as many of each
-        x = y = theta = np.zeros((1, 1))
+    poses = [np.atleast_1d(np.asarray(of, np.float64)) for of in (x_mm, y_mm, theta_rad)]
+    x, y, theta = (np.ascontiguousarray(of) for of in np.broadcast_arrays(*poses))
     if x.ndim != 1 or not all(np.isfinite(of).all() for of in (x, y, theta)):
         raise ValueError("places of a path must be finite numbers, in arrays of one length")
     return x, y, theta
 
 
-def _shown(display: Display, style: BrailleStyle, rate_hz: float) -> Model:
-    """Model that frames of a rate are rendered for."""
-    return replace(
-        model_of(display), display=replace(display, rate_hz=check_rate(rate_hz)), style=style
-    )
-
-
 def _recorded(
-    model: Model,
+    display: Display,
+    style: BrailleStyle,
+    rate_hz: float,
     lines: Sequence[Line],
     first: int,
     frames: NDArray[np.floating],
@@ -366,11 +359,12 @@ def _recorded(
 ) -> Recording:
     from vbraille.recording import Recording  # loads h5py
 
+    display = replace(display, rate_hz=check_rate(rate_hz))
     return Recording(
-        np.arange(len(frames)) / model.display.rate_hz,
+        np.arange(len(frames)) / rate_hz,
         *path,
         frames.astype(np.float32),
-        model,
+        replace(model_of(display), display=display, style=style),
         [each.masks for each in lines],
         line.astype(np.int64),
         np.zeros(len(frames), np.int64) if part is None else part.astype(np.int64),

@@ -1,4 +1,4 @@
-"""A hand that does not finish its line, and one that is too fast: what is said of it."""
+"""A hand that does not finish its line: what is said of it."""
 
 from __future__ import annotations
 
@@ -14,14 +14,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.render import BrailleStyle
-
 _STILL_S = 10.0
 _STILL_MM = 0.5  # a hand that moves less is still
 _REFUSED_S, _HOPELESS_S = 1.0, 10.0  # without a frame taken
 _TURNS, _SAME_MM = 3, 1.0  # so many turns at the same place are an obstacle
 _LEAST_WAY_MM = 20.0  # a hand that has gone less waits at the left
-_FILTER_HZ = 200.0  # above this the devices' filters take texture away (Lévesque 2009, 6.2)
 # Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
 _PLACING, HELD = int(Flag.MARK | Flag.STOP), int(Flag.HELD)
 
@@ -128,16 +125,3 @@ class HandWatch:
         if kind not in self._said:
             self._said.add(kind)
             yield f"waiting: {sentence}"
-
-
-def too_fast_note(speed_mm_s: float, style: BrailleStyle) -> str | None:
-    """Note on a hand so fast that the filters take texture away; None if it is not."""
-    if not style.tuning.texture:
-        return None
-    period_mm = style.profile.texture_period_mm(style.geometry.dot_width_mm, style.tuning.cycles)
-    if speed_mm_s / period_mm <= _FILTER_HZ:
-        return None
-    return (
-        f"speed: {speed_mm_s:.0f} mm/s, at which texture passes {_FILTER_HZ:g} Hz and fades; "
-        f"below {_FILTER_HZ * period_mm:.0f} mm/s it is felt"
-    )

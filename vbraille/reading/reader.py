@@ -9,7 +9,7 @@ from vbraille.braille.cells import dots_of
 from vbraille.errors import InputError
 from vbraille.layout import Layout, cells_per_line
 from vbraille.reading.commands import Where
-from vbraille.reading.hand import HELD, HandWatch, too_fast_note
+from vbraille.reading.hand import HELD, HandWatch
 from vbraille.reading.outputs import Cue
 from vbraille.reading.places import around, nearest
 from vbraille.reading.surface import MOST_CELLS, Part, Surface
@@ -117,7 +117,7 @@ class Reader(Surface):
         self.note_from: int | None = None  # place of the reference that led to a note
         self.beside_mapping: Mapping | None = None  # that the live view shows beside the array
         self.lines_read = 0
-        self._too_fast_said = self._figure_due = False
+        self._figure_due = False
         self._begins_at = self._line_to_begin()
 
     def begin(self) -> None:
@@ -277,8 +277,10 @@ class Reader(Surface):
     def _bring(self, line: Line, cell: int, *, under: bool) -> None:
         """Show a cell of a line, under the finger or in its part of the line."""
         part, x_mm = Part(line, self.width), self.device.x_mm
-        fits = under and x_mm is not None
-        self._put(part.under(cell, x_mm, self.style.geometry) if fits else part.at(cell))
+        if under and x_mm is not None:
+            self._put(part.under(cell, x_mm, self.style.geometry))
+        else:
+            self._put(part.at(cell))
 
     def follow(self, ticks: NDArray[np.void]) -> None:
         """Look where the hand went, and give what follows once it is done with this."""
@@ -298,23 +300,14 @@ class Reader(Surface):
         ):
             self.go_on()
         elif not self.finished:
-            self._say_of_hand(ticks)
+            patient = self.device.held
+            for sentence in self._watch.watch(ticks, reached=self.reached, patient=patient):
+                self.say(sentence)
+            self.hopeless = self._watch.hopeless
 
     def _hand_done(self, tick: np.void) -> bool:
         felt = int(tick["line"]) == self.number and not int(tick["flags"]) & HELD
         return felt and self.device.hand_done
-
-    def _say_of_hand(self, ticks: NDArray[np.void]) -> None:
-        """Say what keeps the hand from the end of the line, and whether it is too fast."""
-        reached, patient = self.reached, self.device.held
-        for sentence in self._watch.watch(ticks, reached=reached, patient=patient):
-            self.say(sentence)
-        self.hopeless = self._watch.hopeless
-        if not (self._too_fast_said or reached or patient or self.figured):
-            note = too_fast_note(float(ticks["vx_mm_s"].max()), self.style)
-            if note is not None:
-                self._too_fast_said = True
-                self.say(note)
 
     def _end_cue(self) -> Cue:
         following = self.beside(1)

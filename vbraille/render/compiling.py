@@ -26,7 +26,6 @@ from vbraille.scene.bitmap import WHOLE, opaque
 from vbraille.scene.bounds import Box, around, bounds, drawn_radius_mm, is_everywhere, reach_mm
 from vbraille.scene.dotting import PlacedDot, rows_of
 from vbraille.scene.joints import Cycle, axial_cycle, cue_cycle, stroke_cycles
-from vbraille.scene.measures import travel_deg
 from vbraille.scene.patterns import (
     Circle,
     Dots,
@@ -405,7 +404,7 @@ class _Writer:
                 self.say(i.LEVEL, 1.0)
                 self.say(i.VIBRATE, pattern.frequency_hz, 1.0)
             case LinearGrating():
-                angle = math.radians(travel_deg(pattern.wave_angle_deg, pattern.ridge_angle_deg))
+                angle = math.radians(pattern.travel_deg)
                 right, down = math.cos(angle), math.sin(angle)
                 start = pattern.start_mm[0] * right + pattern.start_mm[1] * down
                 self.say(i.LINEAR, *self._waveform(pattern), right, down, start)
@@ -663,7 +662,8 @@ class _Writer:
             self.say(i.PROFILE, *_profile(shape.cue_width_mm, shape.cue_edge_mm))
             self.say(i.MULTIPLY)
             # Bands that are not wider than a row of dots end as the row does.
-            if paths.is_open(shape) and shape.cue_width_mm > shape.width_mm:
+            _, closed = shape.outline
+            if not closed and shape.cue_width_mm > shape.width_mm:
                 self.say(i.BEYOND, 2.0 / shape.width_mm)
                 self.say(i.MULTIPLY)
         shows, hides = {

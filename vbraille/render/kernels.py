@@ -12,7 +12,6 @@ from vbraille.render.evaluating import show
 from vbraille.render.frames import copy
 from vbraille.render.signalkernels import begin, compute
 from vbraille.render.waves import compiled as _compiled
-from vbraille.render.waves import phase, swung
 from vbraille.render.work import (
     APART,
     AT,
@@ -50,7 +49,7 @@ from vbraille.render.work import (
     Y,
 )
 
-_PAGE, _VIBRATION, SCENE = 1.0, 2.0, 3.0  # of `ProgramKind`
+_PAGE, SCENE = 1.0, 2.0  # of `ProgramKind`
 _IDLE = CELLS + CELL_NUMBERS
 # An array that was turned too far shows braille again once it is upright by so much more.
 _UPRIGHT = 0.85
@@ -134,11 +133,10 @@ def frame(numbers, table, scratch, part, at, out):
     # Compiled code would otherwise read beyond the numbers.
     if rows != numbers[ROWS] or columns != numbers[COLUMNS]:
         raise ValueError("the frame has not the shape of the array")
-    kind = numbers[KIND]
+    is_free = seamless(numbers)
     x0, y0 = numbers[ORIGIN_X] + at[X], numbers[ORIGIN_Y] + at[Y]
     cosine, sine = math.cos(at[THETA]), math.sin(at[THETA])
     pitch, row_pitch, center = numbers[COLUMN_PITCH], numbers[ROW_PITCH], numbers[CENTER]
-    swing = phase(numbers[FREQUENCY], at[TIME])
     n = 0
     for row in range(rows):
         down = (row - 0.5 * (rows - 1)) * row_pitch
@@ -148,16 +146,14 @@ def frame(numbers, table, scratch, part, at, out):
             sign = 1.0 - 2.0 * ((row + column) & 1)
             scratch[X_ROW, n], scratch[Y_ROW, n], scratch[SIGN_ROW, n] = x, y, sign
             n += 1
-            if kind == _VIBRATION:
-                out[row, column] = swung(1.0, sign * swing)
-            elif kind == _PAGE and numbers[FREE] != 0.0:
+            if is_free:
                 out[row, column] = highest_dot(numbers[CELLS:], table, x, y)
-    if kind == SCENE:
+    if numbers[KIND] == SCENE:
         for k in range(MOST_SIGNALS):
             scratch[GIVEN_ROW, k] = at[SIGNAL + k]
         scratch[GIVEN_ROW, MOST_SIGNALS], scratch[GIVEN_ROW, MOST_SIGNALS + 1] = x0, y0
         show(numbers, table, scratch, at[TIME], out)
-    elif kind != _VIBRATION and not seamless(numbers):
+    elif not is_free:
         for which in _columns_of_dots(numbers):
             find_dots(numbers[CELLS:], scratch, n, which)
             _write(numbers, table, part, scratch, 0, columns, out, which)

@@ -244,13 +244,3 @@ def nothing(display: Display) -> Program:
     numbers = head(display, ProgramKind.LINE, places)
     numbers[work.CELLS :][[work.CELL_PITCH, work.DOT_WIDTH, work.APART]] = 1.0
     return Program(numbers, np.zeros(4, np.uint16))
-
-
-def vibration(display: Display, frequency_hz: float) -> Program:
-    """Make every actuator swing, each against its neighbours, wherever the array is.
-
-    Lévesque 2009, eqs. 8.1 and 8.2.
-    """
-    numbers = head(display, ProgramKind.VIBRATION, work.OWN)
-    numbers[work.FREQUENCY], numbers[work.AMPLITUDE] = frequency_hz, 1.0
-    return Program(numbers, np.zeros(1, np.uint16))

@@ -12,7 +12,6 @@ from msgspec.structs import replace
 
 from vbraille.carriers.carrier import LATERO, PANTOGRAPH, TACTOGRAPH
 from vbraille.scene.bounds import Box, bounds
-from vbraille.scene.measures import travel_deg
 from vbraille.scene.patterns import Fill, Group, Image, Label, Moving, Shape, Tile
 from vbraille.scene.signals import made_of
 from vbraille.scene.textures import LinearGrating, Uniform
@@ -270,7 +269,7 @@ def _waves(pattern: AnyPattern) -> Iterator[tuple[str, RidgeWave]]:
         x_mm_s, y_mm_s = pattern.velocity_mm_s
         for part in each(pattern.part):
             if isinstance(part, LinearGrating):
-                angle = math.radians(travel_deg(part.wave_angle_deg, part.ridge_angle_deg))
+                angle = math.radians(part.travel_deg)
                 across_mm_s = x_mm_s * math.cos(angle) + y_mm_s * math.sin(angle)
                 yield "a grating", part.wave._replace(speed=across_mm_s)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import cache
 from typing import Annotated, Any, NamedTuple, get_args, get_origin, get_type_hints
@@ -103,17 +102,6 @@ class RidgeWave(NamedTuple):
     def flow_hz(self) -> float:
         """Number of waves that pass a place in a second."""
         return abs(self.speed) / self.length
-
-
-def travel_deg(wave_angle_deg: float | None, ridge_angle_deg: float | None) -> float:
-    """Direction in which a grating's wave travels, in degrees from +x towards +y.
-
-    A file says either that or the direction of the ridges, a quarter turn less (Lévesque 2009,
-    6.3.3 and 8.4.1, which use the two differently). Without either the wave travels along x.
-    """
-    if ridge_angle_deg is not None:
-        return math.fmod(ridge_angle_deg + 90.0, 360.0)
-    return 0.0 if wave_angle_deg is None else wave_angle_deg
 
 
 def check_file(name: str, what: str = "file") -> None:

@@ -169,8 +169,11 @@ class Shape(Pattern, frozen=True, kw_only=True):
         super().__post_init__()
         if self.stroke is not None and self.dots is not None:
             raise ValueError("dots cannot be given beside a stroke; leave one out")
-        if self.cue is not None and self.stroke is None and self.dots is None:
+        is_drawn = self.stroke is not None or self.dots is not None
+        if self.cue is not None and not is_drawn:
             raise ValueError("cue needs a stroke or dots that it goes along; add one")
+        if not is_drawn and getattr(self, "fill", None) is None:
+            raise ValueError("a shape needs a stroke, dots or a fill; add one")
 
     @property
     def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
@@ -240,7 +243,6 @@ class StraightLine(Shape, frozen=True, kw_only=True, tag="line"):
         super().__post_init__()
         if math.dist(self.start_mm, self.end_mm) < LEAST_APART_MM:
             raise ValueError("end is where the line starts; a line needs two places")
-        check_drawn(self, None)
 
     @property
     def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
@@ -257,12 +259,6 @@ def check_points(what: str, points_mm: tuple[Point, ...], least: int, *, closed:
             raise ValueError(f"{what}, number {number} is the place before it; leave it out")
     if closed and math.dist(points_mm[-1], points_mm[0]) < LEAST_APART_MM:
         raise ValueError(f"{what}, number {len(points_mm)} is the first place; leave it out")
-
-
-def check_drawn(shape: Shape, fill: object) -> None:
-    """Refuse a shape of which nothing can be felt."""
-    if shape.stroke is None and shape.dots is None and fill is None:
-        raise ValueError("a shape needs a stroke, dots or a fill; add one")
 
 
 class Tile(Pattern, frozen=True, kw_only=True, tag="tile"):
@@ -413,10 +409,6 @@ class Circle(Shape, frozen=True, kw_only=True, tag="circle"):
     radius_mm: Length
     fill: Fill | None = None
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_drawn(self, self.fill)
-
 
 class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
     """A closed polygon whose edges do not cross: Lévesque 2009, 8.4.3.
@@ -458,7 +450,6 @@ class Polygon(Shape, frozen=True, kw_only=True, tag="polygon"):
                 f"vertices make edges that cross or touch, those after number {first} and number "
                 f"{second}; set them in order around the shape"
             )
-        check_drawn(self, self.fill)
 
     @property
     def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
@@ -497,7 +488,6 @@ class PathShape(Shape, frozen=True, kw_only=True, tag="path"):
             check_points(f"contours, number {number}", contour, least, closed=self.closed)
         if self.fill is not None and not self.closed:
             raise ValueError("fill needs a closed path; write closed = true")
-        check_drawn(self, self.fill)
 
     @property
     def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:

@@ -5,6 +5,7 @@ Lévesque 2009, 8.4.1.
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 from vbraille.scene.measures import (
@@ -177,6 +178,17 @@ class LinearGrating(Pattern, frozen=True, kw_only=True, tag="linear-grating"):
         _check_distortion(self.distortion, self.velocity_mm_s)
         if self.wave_angle_deg is not None and self.ridge_angle_deg is not None:
             raise ValueError("ridge_angle_deg cannot be given beside wave_angle_deg; leave one out")
+
+    @property
+    def travel_deg(self) -> float:
+        """Direction in which its wave travels, in degrees from +x towards +y.
+
+        A file says either that or the direction of the ridges, a quarter turn less (Lévesque 2009,
+        6.3.3 and 8.4.1, which use the two differently). Without either the wave travels along x.
+        """
+        if self.ridge_angle_deg is not None:
+            return math.fmod(self.ridge_angle_deg + 90.0, 360.0)
+        return self.wave_angle_deg or 0.0
 
     @property
     def wave(self) -> RidgeWave:

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from vbraille.scene.bitmap import WHOLE
 from vbraille.scene.joints import Cycle, axial_cycle
-from vbraille.scene.measures import travel_deg
 from vbraille.scene.textures import Gradual, Peak
 
 if TYPE_CHECKING:
@@ -139,7 +138,7 @@ def distorted(x: Values, distortion: Gradual | Peak | None) -> Values:
 
 def linear_grating(grating: LinearGrating, at: ActuatorPlaces) -> Values:
     """Compute a linear grating: x is the abscissa along the direction of travel, 8.4.1."""
-    angle = math.radians(travel_deg(grating.wave_angle_deg, grating.ridge_angle_deg))
+    angle = math.radians(grating.travel_deg)
     dx, dy = at.from_point(*grating.start_mm)
     cycle = Cycle(grating.ridge_mm, grating.gap_mm)
     x = distorted(dx * math.cos(angle) + dy * math.sin(angle), grating.distortion)

@@ -137,8 +137,7 @@ def _lead(device: Device, found: Calibration) -> None:
     """Lead a person through the actuators by keys; each finding is kept at once."""
     from vbraille.devices.calibration import save
     from vbraille.devices.events import told
-    from vbraille.engine.calibrating import CalibrationRound
-    from vbraille.engine.checkup import ActuatorSwings
+    from vbraille.engine.calibrating import ActuatorSwings, CalibrationRound
     from vbraille.engine.clock import RealClock
     from vbraille.errors import InputError
     from vbraille.files import settings_path
