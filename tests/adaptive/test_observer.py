@@ -1,12 +1,11 @@
 """Observers on a grid, and staircases: what their equations say."""
 
-import math
 import random
 
 import numpy as np
 import pytest
 
-from vbraille.adaptive.observer import Grid, Quest, nearer, psychometric, steps
+from vbraille.adaptive.observer import Grid, Quest, psychometric, steps
 from vbraille.adaptive.staircase import Rule, Staircases
 
 VALUES = steps(0.0, 1.0, 0.05)
@@ -19,17 +18,6 @@ def test_half_of_the_way_from_guesses_to_lapses_is_at_the_threshold(shape):
     assert at == pytest.approx(0.5 + 0.4 / 2)
     falling = psychometric(shape, falls=True)
     assert falling(0.2, 0.4, 0.1, 0.0, 0.0) > falling(0.6, 0.4, 0.1, 0.0, 0.0)
-
-
-def test_a_weibull_function_has_1_less_e_at_its_threshold():
-    assert psychometric("weibull")(2.0, 2.0, 3.0, 0.0, 0.0) == pytest.approx(1 - math.exp(-1))
-
-
-def test_the_nearer_of_two_is_chosen_more_often_and_the_log_scale_is_of_ratios():
-    observer, by_ratio = nearer(), nearer(log=True)
-    assert observer(1.0, 2.0, 1.2, 0.2, 0.0) > 0.9
-    assert observer(1.0, 2.0, 1.5, 0.2, 0.0) == pytest.approx(0.5)
-    assert by_ratio(1.0, 4.0, 2.0, 0.2, 0.0) == pytest.approx(0.5)
 
 
 def test_the_likelihood_of_counts_is_that_of_single_answers():

@@ -1,4 +1,10 @@
-"""Our QUEST+ beside questplus: the same question after the same answers, the same estimate."""
+"""Our QUEST+ beside questplus: the same question after the same answers, the same estimate.
+
+`oracle.json` has what questplus 2023.1 (GPL, so that it is no requirement) asks in simulated
+sessions of 72 trials: stim_selection_method "min_entropy", param_estimation_method "mean",
+stim_scale "linear". Its `norm_cdf` and `weibull` are of the first three models; the likelihoods of
+pairs were put in its place, by equation (5) of `vbraille.adaptive.observer`.
+"""
 
 import json
 from itertools import product
@@ -40,11 +46,3 @@ def test_it_asks_what_questplus_asks_and_finds_what_it_finds(name):
         for axis, mean in trace["found"].items():
             assert quest.estimate(axis, history).mean == pytest.approx(mean, abs=1e-6)
     assert same >= 0.99 * all_
-
-
-def test_it_would_be_seen_if_the_questions_were_others():
-    model = MODELS["nearer of two"]
-    asked = [
-        [*rest, outcome ^ (n % 2)] for n, (*rest, outcome) in enumerate(model["traces"][0]["asked"])
-    ]
-    assert same_questions(quest_of(model), asked)[0] < 0.5 * len(asked)

@@ -1,6 +1,7 @@
 """Advice of `vbraille scene check` on what is felt: each mistake is said, and nothing else."""
 
 import pytest
+from PIL import Image
 
 from vbraille.pictures.checking import felt_advice
 from vbraille.pictures.loading import load_scene
@@ -76,6 +77,26 @@ def test_each_mistake_is_said_and_nothing_else(tmp_path, name):
     said = advice(tmp_path, *elements)
     assert len(said) == (told is not None), said
     assert all(told in sentence for sentence in said)
+
+
+@pytest.mark.parametrize(
+    ("paper", "more", "said"),
+    [
+        ((0, 0, 0, 0), "", 'write channel = "alpha"'),
+        ((0, 0, 0, 0), 'channel = "alpha"', None),
+        ((255, 255, 255, 255), "", "inverted_source = true to feel what is black"),
+        ((255, 255, 255, 255), "inverted_source = true", None),
+        ((0, 0, 0, 255), "", 'write channel = "alpha", or inverted_source'),
+    ],
+)
+def test_images_whose_paper_is_felt_in_place_of_their_lines_are_said(tmp_path, paper, more, said):
+    picture = Image.new("RGBA", (40, 40), paper)
+    picture.paste((0, 0, 0, 255), (10, 10, 20, 30))
+    picture.save(tmp_path / "a.png")
+    image = 'kind = "image", file = "a.png", place_mm = [20, 20], width_mm = 60'
+    told = advice(tmp_path, f"{{ {', '.join(filter(None, (image, more)))} }}")
+    assert [said in one for one in told if said] == ([True] if said else []), told
+    assert said or not told
 
 
 def test_what_is_right_is_not_remarked_on(tmp_path):

@@ -3,13 +3,11 @@
 import re
 import tomllib
 
-import msgspec
 import pytest
 from msgspec import inspect
 
 from tests.documents import DOCS
 from tests.sessions.sittings import HEAD
-from vbraille.errors import InputError
 from vbraille.sessions.planning.loading import FOLDER, OWN_FILE, parse_protocol
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.planning.protocol import ProtocolFile
@@ -51,9 +49,3 @@ def test_every_key_and_every_kind_is_on_the_page():
             assert re.search(rf"\b{field.encode_name}\b", PAGE), (kind.cls, field.encode_name)
         if kind.tag_field:
             assert f'"{kind.tag}"' in PAGE
-
-
-def test_what_the_page_does_not_have_is_refused():
-    with pytest.raises(InputError, match="line 4"):
-        parse_protocol({OWN_FILE: f"{HEAD}other = 1\n{DESIGN}".encode()}, "page.toml")
-    assert msgspec.structs.fields(ProtocolFile)

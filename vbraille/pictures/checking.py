@@ -15,9 +15,10 @@ from vbraille.pictures.composing import compose
 from vbraille.pictures.index import distance_mm, is_open, label_of, outlines
 from vbraille.render.braille.models import STRESS2_8X8
 from vbraille.render.compiling import SceneMap
+from vbraille.scene.bitmap import WHOLE
 from vbraille.scene.bounds import Box, bounds
 from vbraille.scene.checking import LEAST_BLANK_MM, frequencies, kind_of
-from vbraille.scene.patterns import Circle, Dots, Group, Label, PathShape, Polygon
+from vbraille.scene.patterns import Circle, Dots, Group, Image, Label, PathShape, Polygon
 from vbraille.scene.textures import LinearGrating
 from vbraille.scene.traversal import children, each
 from vbraille.scene.zooming import levels
@@ -124,7 +125,7 @@ class _Check:
             yield f"{error}, so that it cannot be felt"
             return
         for number, element in enumerate(self._scene.elements):
-            for pattern, sentence in (*_faint(element), *_shapes(element)):
+            for pattern, sentence in (*_faint(element), *_shapes(element), *self._images(element)):
                 yield self._said(number, pattern, sentence)
         found: list[_Part] = []
         for number, element in enumerate(self._scene.elements):
@@ -138,6 +139,30 @@ class _Check:
                     found.append(part)
         yield from self._hidden(found)
         yield from self._beside(found)
+
+    def _images(self, element: AnyPattern) -> Iterator[tuple[AnyPattern, str]]:
+        """Images that are down all over, or whose paper is up and not what is drawn on it."""
+        for pattern in each(element):
+            if not isinstance(pattern, Image) or pattern.outside:
+                continue
+            intensities = self._loaded.assets.bitmaps[pattern].intensities
+            if not intensities.any():
+                other = "gray" if pattern.channel == "alpha" else "alpha"
+                yield (
+                    pattern,
+                    (
+                        f'is down all over in its channel "{pattern.channel}", so nothing of it '
+                        f'is felt; write channel = "{other}", or inverted_source = true'
+                    ),
+                )
+            elif np.median(intensities) == WHOLE and not pattern.inverted_source:
+                yield (
+                    pattern,
+                    (
+                        "is up over more than half of it, as black on white paper is; write "
+                        "inverted_source = true to feel what is black"
+                    ),
+                )
 
     def _said(self, number: int, pattern: AnyPattern, sentence: str) -> str:
         element = self._scene.elements[number]

@@ -7,14 +7,13 @@ from collections.abc import Callable, Mapping
 from contextlib import ExitStack, closing
 from datetime import UTC, datetime
 from importlib.metadata import version
-from itertools import count
 from pathlib import Path
 from platform import python_version
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from msgspec import Meta, Struct, ValidationError, convert, structs
 
-from vbraille.errors import InputError, VbrailleError
+from vbraille.errors import InputError
 from vbraille.names import likeness
 from vbraille.sessions.planning.loading import load_protocol
 from vbraille.sessions.planning.plan import Plan, make_plan
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
     from vbraille.sessions.running.answers import Answers
 
 Say = Callable[[str], None]
+MOST_SESSIONS = 10_000  # of a participant with a protocol, in a folder
 _MOST_DRAWN = 1_000_000  # a seed that is drawn is short enough to be written down by hand
 
 
@@ -277,36 +277,23 @@ def nearly_same(folder: Path, participant: str) -> str | None:
 
     None if there is no such pseudonym, or the participant has sessions there.
     """
-    known = {_participant_of(path) for path in folder.glob("*.session")} - {""}
-    if participant in known:
-        return None
+    known = {record.participant_of(path) for path in folder.glob("*.session")} - {""}
     own = likeness(participant, person=True)
-    return next((each for each in sorted(known) if likeness(each, person=True) == own), None)
+    alike = [each for each in sorted(known) if likeness(each, person=True) == own]
+    return None if participant in known or not alike else alike[0]
 
 
 def next_number(path: Path, participant: str) -> int:
     """Return the number of a participant's next session in the folder of a new file."""
-    return 1 + sum(
-        _participant_of(each) == participant for each in path.absolute().parent.glob("*.session")
-    )
-
-
-def _participant_of(path: Path) -> str:
-    try:
-        with record.reading(path) as db:
-            return db.execute("SELECT participant FROM session").fetchone()[0]
-    except (VbrailleError, OSError):
-        return ""
+    known = path.absolute().parent.glob("*.session")
+    return 1 + sum(record.participant_of(each) == participant for each in known)
 
 
 def free_path(participant: str, protocol: str) -> Path:
     """Return the name of a new session in this folder: P01-letters.session, or P01-letters-2."""
-    for number in count(1):
-        ending = "" if number == 1 else f"-{number}"
-        path = Path(f"{participant}-{protocol}{ending}.session")
-        if not path.exists():
-            return path
-    raise AssertionError
+    endings = ("", *(f"-{number}" for number in range(2, MOST_SESSIONS)))
+    paths = (Path(f"{participant}-{protocol}{ending}.session") for ending in endings)
+    return next(path for path in paths if not path.exists())
 
 
 def check_fields(protocol: Protocol, given: Mapping[str, str]) -> dict[str, str]:

@@ -11,7 +11,6 @@ from vbraille.errors import InputError
 from vbraille.sessions.planning.loading import load_protocol
 from vbraille.sessions.planning.order import balanced_orders
 from vbraille.sessions.planning.plan import make_plan, to_brf
-from vbraille.sessions.planning.values import Look
 
 TWO = (
     MINI
@@ -121,14 +120,6 @@ def test_counterbalanced_items_go_round_the_conditions(tmp_path):
     assert len(seen) == 8
 
 
-def test_gaps_are_drawn_from_the_seed(tmp_path):
-    protocol = load(tmp_path, MINI + "repeats = 20\n[trial]\ngap_s = [0.5, 1.5]\n")
-    gaps = [trial.gap_s for trial in make_plan(protocol, "P01", 1).trials]
-    assert gaps == [trial.gap_s for trial in make_plan(protocol, "P01", 1).trials]
-    assert 0.5 <= min(gaps) < 0.7
-    assert 1.3 < max(gaps) <= 1.5
-
-
 def test_catch_trials_show_nothing_or_the_trial_before(tmp_path):
     for show in ("blank", "repeat"):
         catch = f'catch = {{ every = 4, show = "{show}" }}\nblocks = 1'
@@ -186,12 +177,6 @@ def test_a_gap_between_dots_is_from_edge_to_edge(tmp_path):
         for stimulus in trial.stimuli:
             spacing_mm = protocol.style(stimulus.look).geometry.dot_spacing_mm
             assert spacing_mm == pytest.approx(2.0 + stimulus.value)
-
-
-def test_a_look_takes_the_place_of_the_displays_own(tmp_path):
-    protocol = load(tmp_path, MINI)
-    plan = make_plan(protocol, "P01", 1, look=Look(texture=0.25))
-    assert {trial.stimuli[0].look.texture for trial in plan.trials} == {0.25}
 
 
 def test_conditions_may_have_braille_tables_of_their_own(tmp_path):

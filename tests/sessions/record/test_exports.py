@@ -14,7 +14,7 @@ from tests.sessions.sittings import HEAD, MINI, SURE, WIDTHS, made
 from vbraille.errors import InputError
 from vbraille.sessions.record.bids import export_bids
 from vbraille.sessions.record.record import read
-from vbraille.sessions.record.replay import open_replay
+from vbraille.sessions.record.replay import Replay
 from vbraille.sessions.record.trials import best_level, codebook, protocol_of, rows, to_csv
 from vbraille.sessions.record.withdraw import withdrawal
 from vbraille.sessions.running.device import SessionDevice
@@ -97,11 +97,11 @@ def test_frames_are_made_again_bit_for_bit(tmp_path, monkeypatch):
 
     monkeypatch.setattr(SessionDevice, "poll", watched)
     sat = made(tmp_path, MINI + "repeats = 2\n").sit(answers="simulated")
-    replay = open_replay(sat.session.path)
+    replay = Replay(sat.session.path)
     assert len(replay.showings) == 6
-    for showing in replay.showings:
-        _, frames = replay.frames(showing.line)
-        played = np.array(felt[showing.line])
+    for line in replay.showings:
+        _, frames = replay.frames(line)
+        played = np.array(felt[line])
         np.testing.assert_array_equal(frames.astype(played.dtype), played)
 
 

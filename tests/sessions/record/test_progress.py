@@ -3,12 +3,10 @@
 import pytest
 
 from tests.sessions.planning.test_protocols import load
-from tests.sessions.sittings import MINI, SURE, WIDTHS
+from tests.sessions.sittings import MINI, WIDTHS
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Event
-
-PRACTICE = '[practice]\nstrings = ["c"]\nuntil = { right = 2, of = 2, most = 6 }\n'
 
 
 class Story:
@@ -45,52 +43,6 @@ class Story:
         return Progress(self.progress.protocol, self.progress.plan, self.events)
 
 
-def test_an_answer_that_is_taken_back_comes_again(tmp_path):
-    story = Story(tmp_path, MINI)
-    first, second = story.answer(), story.answer()
-    assert [first.number, second.number] == [1, 2]
-    story.tell("undo", second)
-    assert story.progress.next_trial == second
-    assert story.progress.is_taken_back(second)
-    story.tell("answer", second, answer="⠁⠁")
-    assert story.answer().number == 3
-    assert story.progress.next_trial is None
-    assert story.progress.last_answered.number == 3
-
-
-def test_a_confidence_alone_is_asked_after_a_resume(tmp_path):
-    story = Story(tmp_path, MINI + SURE)
-    first = story.answer()
-    for progress in (story.progress, story.again):
-        assert progress.next_trial == first
-        assert progress.lacks_confidence(first)
-    story.tell("confidence", first, confidence=3)
-    assert story.again.next_trial.number == 2
-
-
-def test_practice_ends_by_its_criterion_or_by_word(tmp_path):
-    story = Story(tmp_path, MINI + PRACTICE)
-    story.answer(right=False)
-    story.answer()
-    assert story.progress.next_trial.practice
-    story.answer()
-    assert not story.again.next_trial.practice
-    story = Story(tmp_path, MINI + PRACTICE)
-    story.tell("begin")
-    assert not story.progress.next_trial.practice
-
-
-def test_a_trial_that_was_missed_is_over_until_it_is_taken_back(tmp_path):
-    story = Story(tmp_path, MINI)
-    trial = story.progress.next_trial
-    story.show(trial)
-    story.tell("missed", trial)
-    assert story.progress.next_trial.number == 2
-    assert story.progress.done == 1
-    story.tell("undo", trial)
-    assert story.progress.next_trial == trial
-
-
 def test_questions_are_due_in_their_place(tmp_path):
     items = "".join(
         f'[[questionnaire]]\nkind = "text"\nname = "at_{when}"\nwhen = "{when}"\nask = "?"\n'
@@ -112,18 +64,6 @@ def test_questions_are_due_in_their_place(tmp_path):
     newest = story.progress.newest_given
     story.tell("undo", name=newest.data["name"], number=newest.data["number"])
     assert story.progress.next_item[0].name == "at_end"
-
-
-def test_breaks_are_due_after_so_many_trials(tmp_path):
-    story = Story(tmp_path, MINI + "repeats = 2\n[session]\nbreak_every = 2\n")
-    due = []
-    while (trial := story.progress.next_trial) is not None:
-        if story.progress.is_break_due(trial):
-            due.append(trial.number)
-            story.tell("break")
-            assert not story.progress.is_break_due(trial)
-        story.answer()
-    assert due == [3, 5]
 
 
 CONTRAST = 'parameter = "contrast"\nleast = 0.0\nmost = 1.0\n'

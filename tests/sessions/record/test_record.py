@@ -5,7 +5,6 @@ import shutil
 import sqlite3
 import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
@@ -81,35 +80,6 @@ def test_a_second_console_and_what_is_no_session_are_told(tmp_path):
         with pytest.raises(RecordError):
             Record(what)
         assert check(what)
-
-
-FULL = """
-import resource, signal, sys
-from pathlib import Path
-from vbraille.sessions.record.record import Record, RecordError
-signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-record = Record(Path(sys.argv[1]))
-most = Path(sys.argv[1]).stat().st_size + 40_000
-resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
-try:
-    for number in range(1000):
-        record.append("note", float(number), text="x" * 500)
-        print(number + 1, flush=True)
-except RecordError as error:
-    print(error, file=sys.stderr)
-"""
-
-
-def test_a_full_disk_loses_nothing_that_was_in(tmp_path):
-    path = made(tmp_path).session.path
-    done = subprocess.run(
-        [sys.executable, "-c", FULL, path], check=False, capture_output=True, text=True
-    )
-    said = int(done.stdout.split()[-1])
-    assert "disk" in done.stderr
-    assert "Traceback" not in done.stderr
-    assert sum(event.kind == "note" for event in read(path).events) == said > 10
-    assert check(path) == []
 
 
 CHANGES = {
@@ -195,21 +165,6 @@ def test_a_hot_journal_is_taken_back(tmp_path):
     assert path.with_name(f"{path.name}-journal").stat().st_size > 0
     assert read(path).events[-1].data == {"text": "kept"}
     assert check(path) == []
-
-
-def test_large_records_are_read_soon(tmp_path):
-    path = made(tmp_path, MINI + "repeats = 300\n").session.path
-    record = Record(path)
-    record._db.execute("PRAGMA synchronous = OFF")
-    for number, trial in enumerate(record.read().plan.trials):
-        record.append("cue", number + 0.1, trial, 1, stimulus=0, line=number + 1)
-        record.append("answer", number + 0.9, trial, 1, answer=trial.cells)
-    record.close()
-    start = time.process_time()
-    assert check(path) == []
-    with reading(path) as db:
-        assert len(db.execute("SELECT * FROM answers").fetchall()) == 900
-    assert time.process_time() - start < 1
 
 
 @pytest.mark.skipif(not os.geteuid(), reason="the superuser may write all")

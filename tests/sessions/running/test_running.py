@@ -124,14 +124,6 @@ def test_practice_goes_on_until_enough_are_right_and_tells_what_it_was(tmp_path)
     assert rights[0] in told[0]
 
 
-def test_practice_can_be_ended(tmp_path):
-    practice = "[practice]\ntrials = 2\nstrings = ['a', 'c']\n"
-    sat = made(tmp_path, MINI + practice).sit(
-        ("cue: practice 1", "begin"), ("cue: trial 1", "begin"), ("over already", "stop")
-    )
-    assert [event.practice for event in sat.of("cue")] == [1, 0]
-
-
 def test_the_gap_before_a_trial_is_drawn_and_kept(tmp_path):
     sat = made(tmp_path, MINI + "[trial]\ngap_s = [0.5, 1.5]\n").sit(answers="simulated")
     given = {trial.number: trial.gap_s for trial in sat.session.content.plan.trials}

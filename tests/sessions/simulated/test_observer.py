@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 
 from tests.render.scenes import JIT
-from tests.shown import LATERO, rendered
+from tests.shown import rendered
 from vbraille.render import (
     MAPPINGS,
     STRESS2,
     VBD,
-    Mapping,
     Tuning,
     single_row,
 )
@@ -134,14 +133,6 @@ def test_dots_off_the_mapping_and_blank_cells(rng):
     assert not evidence[[1, 3]][:, [1, 4]].any()
 
 
-def test_a_mapping_with_dots_7_and_8_and_another_array(rng):
-    model = replace(STRESS2, display=LATERO)
-    eight = Mapping("eight", (0, 1, 2, 3), (0, 1, 2, 3), (False, True, False, True))
-    masks = [255, 0b11000000, 0, 0b01000001]
-    given = explored(model, eight, masks, *moved(model, QUICK, 4))
-    assert of(model, eight).read(given, 4, rng) == masks
-
-
 def test_a_hand_that_turns_round_and_stops_in_the_middle(rng):
     masks = drawn(rng, STRESS2.style.mapping)
     knots = [(0, -14), (0.3, 16), (0.6, 16), (0.9, -6), (1.2, 20), (1.5, 8), (2.0, 48)]
@@ -150,44 +141,6 @@ def test_a_hand_that_turns_round_and_stops_in_the_middle(rng):
     x_mm = np.interp(time_s, knots_s, knots_mm)
     given = explored(STRESS2, STRESS2.style.mapping, masks, time_s, x_mm)
     assert of(STRESS2, STRESS2.style.mapping).read(faded_in(given), 4, rng) == masks
-
-
-def test_what_a_later_pass_gives_outdoes_what_faded_or_rested():
-    time_s, x_mm = moved(VBD, "sweep:100", 3)
-    twice = np.concatenate([time_s, time_s + time_s[-1] + 1e-3])
-    given = explored(VBD, VBD.style.mapping, [9, 1, 8], twice, np.concatenate([x_mm, x_mm]))
-    first = np.arange(twice.size) < time_s.size
-    weak = given.frames * np.where(first, 0.3, 1.0).astype(np.float32)[:, None, None]
-    weak[time_s.size // 2 : time_s.size] = 0
-    observer = of(VBD, VBD.style.mapping)
-    np.testing.assert_allclose(
-        observer.felt(replace(given, frames=weak), 3),
-        observer.felt(given, 3),
-        rtol=1e-6,
-    )
-
-
-@pytest.mark.parametrize(
-    ("hand", "model", "texture", "most"),
-    [
-        ("device", VBD, 1.0, 1.5e-3),
-        ("device", STRESS2, 1.0, 1.5e-3),
-        ("fluent", VBD, 0.0, 1.5e-3),
-        ("fluent", STRESS2, 0.0, 1.5e-3),
-        ("fluent", STRESS2, 1.0, 5e-3),
-        ("sweep:20", STRESS2, 1.0, 1.5e-3),
-    ][: None if JIT else 0],
-)
-def test_when_exactly_the_ticks_were_hardly_matters(hand, model, texture, most, rng):
-    observer = of(model, model.style.mapping)
-    touches = []
-    for late_s in ((), rng.exponential(1e-4, 997) + 3e-4):
-        path = moved(model, hand, 3, seed=7, late_s=late_s)
-        given = explored(model, model.style.mapping, [9, 1, 25], *path, texture=texture)
-        touches.append(observer.felt(given, 3))
-    felt = touches[0] > 0.1
-    assert felt.sum() >= 4
-    np.testing.assert_allclose(touches[1][felt], touches[0][felt], rtol=most)
 
 
 def test_evidence_is_in_proportion_to_contrast_and_near_1_for_a_plain_dot():
@@ -221,17 +174,6 @@ def test_legibility_falls_with_contrast(rng):
     assert right[-1] < 0.25  # chance is 1/16
 
 
-def test_noise_is_the_seeds(rng):
-    given = explored(
-        VBD, VBD.style.mapping, [9, 1, 8, 9], *moved(VBD, "sweep:200", 4), contrast=0.2
-    )
-    observer = of(VBD, VBD.style.mapping, noise=0.2)
-    seeds = [int(seed) for seed in rng.integers(0, 1000, 12)]
-    answers = [observer.read(given, 4, np.random.default_rng(seed)) for seed in seeds]
-    assert answers == [observer.read(given, 4, np.random.default_rng(seed)) for seed in seeds]
-    assert len({tuple(answer) for answer in answers}) > 3
-
-
 def test_nothing_felt_is_no_answer(rng):
     path = moved(VBD, "sweep:200", 3)
     blind = of(VBD, VBD.style.mapping, noise=0.2)
@@ -249,14 +191,6 @@ def test_where_the_hand_never_was_there_is_no_answer(rng):
     observer = of(VBD, VBD.style.mapping)
     assert observer.read(near, 3, rng) == [9, 1, None]
     assert np.isnan(observer.felt(near, 3)[2]).all()
-
-
-def test_ticks_without_a_place_are_dropped(rng):
-    given = explored(VBD, VBD.style.mapping, [9, 1], *moved(VBD, "sweep:100", 2))
-    x_mm = given.x_mm.copy()
-    x_mm[:20] = np.nan
-    observer = of(VBD, VBD.style.mapping)
-    assert observer.read(replace(given, x_mm=x_mm), 2, rng) == [9, 1]
 
 
 WIDTHS_MM = [0.5, 1.0, 1.5, 2.0, 2.5, 3.0]

@@ -52,6 +52,6 @@ def _opened(path: Path) -> Playback:
         from vbraille.playback.rendered import open_recording
 
         return open_recording(path)
-    from vbraille.sessions.playback import open_session
+    from vbraille.sessions.playback import SessionPlayback
 
-    return open_session(path)
+    return SessionPlayback(path)

@@ -7,7 +7,7 @@ import math
 import os
 import re
 from collections import defaultdict
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from dataclasses import replace as changed
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -34,7 +34,7 @@ from vbraille.scene.svg.document import (
 from vbraille.scene.svg.labels import TextReader
 from vbraille.scene.svg.looks import LEAST_SHARE, ClassLook, dashes_of, fill_of, stroke_of
 from vbraille.scene.svg.outlines import MOST_POINTS, SHAPES, TOO_FAR
-from vbraille.scene.svg.styles import StyleSheets
+from vbraille.scene.svg.styles import INITIAL, StyleSheets
 from vbraille.scene.svg.values import (
     BLACK,
     PX_MM,
@@ -119,7 +119,7 @@ class _Place:
 
     matrix: AffineMap
     units: Units
-    style: Mapping[str, str] = field(default_factory=dict)
+    style: Mapping[str, str]
     look: ClassLook | None = None
     strength: float = 1.0
     clip: list[Ring] | None = None
@@ -196,18 +196,19 @@ def size_px(root: Element, style: Mapping[str, str], name: str) -> Point:
     InputError
         If there is none of these.
     """
-    width, height = (
-        Units().length(None if "%" in text else text, 0.0)
-        for text in (style.get("width", ""), style.get("height", ""))
-    )
+    sizes = [
+        None if "%" in text else Units().length(text, 0.0)
+        for text in (style["width"], style["height"])
+    ]
     if (view := view_box_of(root.get("viewBox"))) is not None:
-        if width is None and height is None:
-            width, height = view[2:]
-        elif width is None:
-            width = (height or 0.0) * view[2] / view[3]
-        elif height is None:
-            height = width * view[3] / view[2]
-    if not width or not height or width <= 0 or height <= 0:
+        known = [size / own for size, own in zip(sizes, view[2:], strict=True) if size is not None]
+        factor = known[0] if known else 1.0
+        sizes = [
+            factor * own if size is None else size
+            for size, own in zip(sizes, view[2:], strict=True)
+        ]
+    width, height = (size or 0.0 for size in sizes)
+    if min(width, height) <= 0:
         raise InputError(f"{name} has no size; give its svg element a width and a height")
     return width, height
 
@@ -234,11 +235,15 @@ class SvgDrawing:
 
     def __init__(self, name: str, root: Element, class_looks: Mapping[str, ClassLook]) -> None:
         self._name, self._root, self._class_looks = name, root, class_looks
+        self._notes: dict[str, list[tuple[int, str]]] = defaultdict(list)
         self._ids: dict[str, Element] = {}
         for element in root.iter():
             if own_id := element.get("id"):
                 self._ids.setdefault(own_id, element)
-        self._notes: dict[str, list[tuple[int, str]]] = defaultdict(list)
+            if name_of(element) == "script":
+                self.note(element, "it is never run, and ignored")
+            if any(str(key).startswith("on") for key in element.keys()):  # noqa: SIM118 - no dict
+                self.note(element, "its script is never run")
         self._named: set[str] = set()
         self._used: list[Element] = []
         self._met: set[str] = set()  # names of classes that the scene gives a look
@@ -249,22 +254,17 @@ class SvgDrawing:
         except InputError as error:
             raise InputError(f"{name}: {error}") from None
         self._texts = TextReader(self._sheets, self._ids, self.note)
-        self._style = self._sheets.of(root, {}, Units())
+        self._style = self._sheets.of(root, INITIAL, Units())
         self.size_px = size_px(root, self._style, name)
         self._units = Units(self.size_px, self.size_px)
 
     def nodes(self) -> list[DrawnNode]:
         """Patterns of the whole drawing."""
-        for element in self._root.iter():
-            if name_of(element) == "script":
-                self.note(element, "it is never run, and ignored")
-            if any(str(key).startswith("on") for key in element.keys()):  # noqa: SIM118 - no dict
-                self.note(element, "its script is never run")
-        if self._style.get("display") == "none":
+        if self._style["display"] == "none":
             return []
         # What is beyond the page is kept.
         style = {**self._style, "overflow": "visible"}
-        strength = share_of(style.get("opacity", "1"))
+        strength = share_of(style["opacity"])
         place = _Place(AffineMap(PX_MM), self._units.sized(style), style, strength=strength)
         return self._in_view(self._root, place, self.size_px)
 
@@ -281,10 +281,11 @@ class SvgDrawing:
             (line, name), *others = places
             sentence = f"line {line}: {name}: {remark}" if line else f"{name}: {remark}"
             if others:
-                lines = sorted({line for line, _ in others})
-                sentence += f"; and {len(others)} more, in line{'s' * (len(lines) > 1)} "
-                sentence += ", ".join(map(str, lines[:_NAMED_LINES]))
-                sentence += " and others" * (len(lines) > _NAMED_LINES)
+                lines = [str(line) for line in sorted({line for line, _ in others})]
+                more = " and others" * (len(lines) > _NAMED_LINES)
+                sentence += (
+                    f"; and {len(others)} more, in lines {', '.join(lines[:_NAMED_LINES])}{more}"
+                )
             said.append(sentence)
         said += [
             f"nothing that is shown has the class, label or id {name}, which the scene speaks of"
@@ -307,7 +308,7 @@ class SvgDrawing:
 
     def _in_view(self, element: Element, place: _Place, size: Point) -> list[DrawnNode]:
         """Patterns of the elements in a viewport at the origin, cut to it and fitted into it."""
-        if place.style.get("overflow", "hidden") in ("hidden", "scroll"):
+        if place.style["overflow"] in ("hidden", "scroll"):
             ends = 0j, complex(size[0], 0.0), complex(*size), complex(0.0, size[1])
             box = outlines.ring_of(map(place.matrix, ends))
             clip = [box] if place.clip is None else outlines.cut([box], place.clip)
@@ -350,9 +351,9 @@ class SvgDrawing:
             return []
         style = self._sheets.of(element, around.style, around.units)
         look = self._look(element) or around.look
-        strength = around.strength * share_of(style.get("opacity", "1"))
+        strength = around.strength * share_of(style["opacity"])
         faint = strength <= LEAST_SHARE and around.cutting is None
-        if style.get("display") == "none" or faint or (look and look.hidden):
+        if style["display"] == "none" or faint or (look and look.hidden):
             return []
         place = changed(
             around,
@@ -363,7 +364,7 @@ class SvgDrawing:
             depth=around.depth + 1,
         )
         for word in _UNFELT:
-            if style.get(word, "none") not in ("none", ""):
+            if style[word] != "none":
                 self.note(element, f"its {word} is ignored")
         place = changed(place, matrix=place.matrix @ self._matrix(element, name, place))
         if place.matrix.scale == 0.0:
@@ -401,7 +402,7 @@ class SvgDrawing:
             return self._of_svg(element, place, sizes)
         if name not in SHAPES and name != "text":
             return self._inside(element, place)
-        if place.style.get("visibility") in ("hidden", "collapse"):
+        if place.style["visibility"] in ("hidden", "collapse"):
             return []
         try:
             if name == "text":
@@ -450,7 +451,7 @@ class SvgDrawing:
         for key, given, whole in zip(
             ("width", "height"), sizes or (None, None), units.view, strict=True
         ):
-            texts = (given, place.style.get(key), "100%")
+            texts = (given, place.style[key], "100%")
             lengths = (units.length(text, whole) for text in texts)
             size.append(next(one for one in lengths if one is not None))
         if min(size) <= 0:
@@ -517,19 +518,18 @@ class SvgDrawing:
         stroke = look.stroke
         if stroke is None:
             scale = place.matrix.scale
-            if style.get("vector-effect", "").strip() == "non-scaling-stroke":
+            if style["vector-effect"] == "non-scaling-stroke":
                 view = view_box_of(self._root.get("viewBox")) or (0.0, 0.0, *self.size_px)
                 scale = PX_MM * fit(view, self.size_px, "").scale
-            width = units.length(style.get("stroke-width", "1"), units.diagonal) or 0.0
+            width = units.length(style["stroke-width"], units.diagonal) or 0.0
             color = self._color(element, place, "stroke")
             stroke = color and stroke_of(color, width * scale, dashes_of(style, scale, units), note)
         return fill, {"stroke": stroke} if stroke else {}
 
     def _color(self, element: Element, place: _Place, what: str) -> Color | None:
         """Colour of a fill or a stroke, with all its transparency; None for no paint."""
-        usual = "black" if what == "fill" else "none"
-        color = self._paint(element, place, what, place.style.get(what, usual))
-        share = share_of(place.style.get(f"{what}-opacity", "1"))
+        color = self._paint(element, place, what, place.style[what])
+        share = share_of(place.style[f"{what}-opacity"])
         return color and color._replace(alpha=color.alpha * share)
 
     def _paint(self, element: Element, place: _Place, what: str, text: str) -> Color | None:
@@ -538,11 +538,10 @@ class SvgDrawing:
         if word == "none":
             return None
         if word == "currentcolor":
-            return color_of(place.style.get("color", "black")) or BLACK
+            return color_of(place.style["color"]) or BLACK
         if word.startswith("context-"):
             there, which = place.context, word.removeprefix("context-")
-            usual = "black" if which == "fill" else "none"
-            return there and self._paint(element, there, what, there.style.get(which, usual))
+            return there and self._paint(element, there, what, there.style[which])
         if not word.startswith("url("):
             return color_of(text.strip())
         found = self._ids.get(target_of(text))
@@ -572,9 +571,9 @@ class SvgDrawing:
                 after = self._ids.get(link_of(after)[1:])
         colors: set[Color] = set()
         for stop in stops:
-            style = self._sheets.of(stop, {}, self._units)
-            color = color_of(style.get("stop-color", "black")) or BLACK
-            opacity = share_of(style.get("stop-opacity", "1"))
+            style = self._sheets.of(stop, INITIAL, self._units)
+            color = color_of(style["stop-color"]) or BLACK
+            opacity = share_of(style["stop-opacity"])
             colors.add(color._replace(alpha=color.alpha * opacity))
         plain = len(colors) == 1 or all(color.alpha <= LEAST_SHARE for color in colors)
         return next(iter(colors), None) if plain else BLACK
@@ -584,7 +583,7 @@ class SvgDrawing:
     ) -> list[Ring]:
         """Areas within contours by a fill rule, cut to the clip."""
         rings = [one.ring for one in contours if len(one.ring) >= 3]
-        areas, right = outlines.filled(rings, place.style.get(rule, "nonzero"))
+        areas, right = outlines.filled(rings, place.style[rule])
         if not right:
             self.note(element, "it has too many places to find where it overlaps itself; "
                       "it is filled by the even-odd rule")  # fmt: skip
@@ -624,35 +623,20 @@ class SvgDrawing:
             return [StraightLine(start_mm=start, end_mm=end, **lines)]
         found: list[AnyPattern] = []
         if fill is not None:
-            areas = self._areas(element, contours, place, "fill-rule")
-            shape = (
-                PathShape(contours_mm=tuple(map(outlines.in_mm, areas)), closed=True, fill=fill)
-                if areas
-                else None
-            )
-            if (
-                shape
-                and shape.contours_mm == tuple(rings)
-                and all(c.closed for c in contours)
-                and whole
-            ):
-                return [replace(shape, **lines)]
-            found += [shape] if shape else []
+            areas = tuple(map(outlines.in_mm, self._areas(element, contours, place, "fill-rule")))
+            if areas and areas == tuple(rings) and whole and all(one.closed for one in contours):
+                return [PathShape(contours_mm=areas, closed=True, fill=fill, **lines)]
+            if areas:
+                found.append(PathShape(contours_mm=areas, closed=True, fill=fill))
         stroke = lines.get("stroke")
         if stroke is not None and place.clip is not None:
-            areas = outlines.cut(outlines.stroked(contours, stroke.width_mm), place.clip)
-            self._count_points(areas)
-            level = Uniform(
-                level=1.0 if stroke.amplitude else 0.0, amplitude=stroke.amplitude or 1.0
-            )
-            inner = Fill(texture=level, fade_mm=min(stroke.width_mm / 2, 1.0))
-            if areas:
-                found.append(
-                    PathShape(
-                        contours_mm=tuple(map(outlines.in_mm, areas)), closed=True, fill=inner
-                    )
-                )
-            return found
+            cut = outlines.cut(outlines.stroked(contours, stroke.width_mm), place.clip)
+            self._count_points(cut)
+            # White lines are smooth, and hide what is below.
+            level = Uniform(level=float(stroke.amplitude > 0), amplitude=stroke.amplitude or 1.0)
+            fill = Fill(texture=level, fade_mm=min(stroke.width_mm / 2, 1.0))
+            areas = tuple(map(outlines.in_mm, cut))
+            return [*found, PathShape(contours_mm=areas, closed=True, fill=fill)] if cut else found
         for closed in (True, False):
             parts = tuple(
                 ring for ring, one in zip(rings, contours, strict=True) if one.closed == closed
@@ -663,8 +647,8 @@ class SvgDrawing:
 
     def _clipped(self, element: Element, name: str, place: _Place) -> _Place:
         """Place of an element with its own clip-path."""
-        written = place.style.get("clip-path", "none").strip()
-        if written in ("none", ""):
+        written = place.style["clip-path"]
+        if written == "none":
             return place
         target = self._ids.get(target_of(written))
         box: Box | None = (0.0, 0.0, 1.0, 1.0)
@@ -694,7 +678,7 @@ class SvgDrawing:
 
     def _style_around(self, element: Element) -> Mapping[str, str]:
         """Style of the elements around one that is used from elsewhere."""
-        style: Mapping[str, str] = {}
+        style: Mapping[str, str] = INITIAL
         for one in reversed(list(element.iterancestors())):
             style = self._sheets.of(one, style, self._units)
         return style
@@ -702,8 +686,7 @@ class SvgDrawing:
     def _markers(self, segments: Any, place: _Place) -> list[DrawnNode]:
         """Patterns of the markers at the vertices of a path."""
         start, middle, end = (
-            self._ids.get(target_of(place.style.get(f"marker-{at}", "none")))
-            for at in ("start", "mid", "end")
+            self._ids.get(target_of(place.style[f"marker-{at}"])) for at in ("start", "mid", "end")
         )
         if start is middle is end is None or place.depth >= _MOST_DEPTH:
             return []
@@ -724,7 +707,7 @@ class SvgDrawing:
         self._elements += 1
         units, style = place.units, place.style
         size = units.place(marker.get("markerWidth", "3"), marker.get("markerHeight", "3"))
-        width = units.length(style.get("stroke-width", "1"), units.diagonal) or 0.0
+        width = units.length(style["stroke-width"], units.diagonal) or 0.0
         unit = 1.0 if marker.get("markerUnits") == "userSpaceOnUse" else width
         if min(size.real, size.imag, unit) <= 0 or marker in self._used:
             return []
@@ -749,18 +732,18 @@ class SvgDrawing:
             depth=place.depth + 1,
         )
         self._used.append(marker)
-        faint = share_of(inner.style.get("opacity", "1")) <= LEAST_SHARE
+        faint = share_of(inner.style["opacity"]) <= LEAST_SHARE
         found = [] if faint else self._in_view(marker, inner, box)
         self._used.pop()
         return found
 
     def _matrix(self, element: Element, name: str, place: _Place) -> AffineMap:
         """Map of an element's transform about its origin."""
-        written = place.style.get("transform", "none").strip()
-        if written in ("", "none"):
+        written = place.style["transform"]
+        if written == "none":
             return AffineMap()
         box: Box = (0.0, 0.0, *place.units.view)
-        if place.style.get("transform-box", "").strip() in _OWN_BOXES:
+        if place.style["transform-box"] in _OWN_BOXES:
             own = self._box(element, name, place)
             if own is None:
                 self.note(element, "its transform-box is ignored; only shapes have one")
@@ -769,7 +752,7 @@ class SvgDrawing:
         if matrix is None:
             self.note(element, "its transform is not understood; it is drawn without")
             return AffineMap()
-        origin = origin_of(place.style.get("transform-origin", "0 0"), place.units, box)
+        origin = origin_of(place.style["transform-origin"], place.units, box)
         if origin is None:
             self.note(element, "its transform-origin is not understood; it is ignored")
         return about(origin or 0j, matrix)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 # Latero's, which are among the largest: labels placed by them meet nothing on other devices.
 CELL_MM, HEIGHT_MM, LINE_MM = 11.1, 9.0, 12.5
 _LONGEST_TEXT = 2000
-_ANCHORS = {"middle": 0.5, "end": 1.0}
+_ANCHORS = {"start": 0.0, "middle": 0.5, "end": 1.0}
 # How far the foot of letters is above the place of a text, as a share of the height of a cell.
 _BASELINES = {"middle": 0.5, "central": 0.5, "hanging": 1.0, "text-before-edge": 1.0,
               "text-top": 1.0}  # fmt: skip
@@ -85,8 +85,8 @@ class TextReader:
             text = plain(line.text, _LONGEST_TEXT)
             if not text:
                 continue
-            share = _ANCHORS.get(line.style.get("text-anchor", ""), 0.0)
-            base = _BASELINES.get(line.style.get("dominant-baseline", ""), 0.0)
+            share = _ANCHORS[line.style["text-anchor"]]
+            base = _BASELINES.get(line.style["dominant-baseline"], 0.0)
             corner = matrix(line.place)
             corner -= down * HEIGHT_MM * (1 - base) + along * share * len(text) * CELL_MM
             if before is not None:
@@ -111,7 +111,7 @@ class TextReader:
         for child in element:
             if name_of(child) in _PARTS:
                 inner = self._sheets.of(child, style, units)
-                if inner.get("display") != "none" and inner.get("visibility") != "hidden":
+                if inner["display"] != "none" and inner["visibility"] != "hidden":
                     self._gather(child, inner, units.sized(inner), lines)
             lines[-1].text += child.tail or ""
 

@@ -133,7 +133,7 @@ def stroke_of(color: Color, width_mm: float, dashes_mm: list[float], note: Note)
 
 def dashes_of(style: Mapping[str, str], scale_mm: float, units: Units) -> list[float]:
     """Lengths of dashes and gaps in mm; empty for a whole line."""
-    words = re.split(r"[\s,]+", style.get("stroke-dasharray", "none"))
+    words = re.split(r"[\s,]+", style["stroke-dasharray"])
     lengths = [(units.length(word, units.diagonal) or 0.0) * scale_mm for word in words]
     if min(lengths) < 0 or sum(lengths) <= 0:
         return []

@@ -31,6 +31,7 @@ SHAPES = frozenset(("path", "rect", "circle", "ellipse", "line", "polyline", "po
 _FLATNESS_MM = 0.05
 MOST_POINTS = 500_000  # of a drawing
 TOO_FAR = "it goes farther than 10 m from the drawing's corner"
+_NOT_CUT = "it has too many places or crossings to be cut"
 _PER_MM = 10_000
 _MOST_CHARACTERS = 1_000_000  # of the text of a path
 # Outlines of more places, or so long that they must cross very often, take Clipper too long.
@@ -104,45 +105,41 @@ def path_of(element: Element, style: Mapping[str, str], units: Units) -> str:
         return f"M{places}{'Z' * (name == 'polygon')}" if len(numbers) >= 4 else ""
     if name == "rect":
         place, size = (
-            units.place(style.get(x), style.get(y)) for x, y in (("x", "y"), ("width", "height"))
+            units.place(style["x"], style["y"]),
+            units.place(style["width"], style["height"]),
         )
         x, y, w, h = place.real, place.imag, size.real, size.imag
-        rx, ry = min(_radii(style, units)[0], w / 2), min(_radii(style, units)[1], h / 2)
-        if w <= 0 or h <= 0:
-            return ""
-        if not rx or not ry:
-            return f"M{x!r} {y!r}H{x + w!r}V{y + h!r}H{x!r}Z"
-        arc = f"A{rx!r} {ry!r} 0 0 1"
-        return (
-            f"M{x + rx!r} {y!r}H{x + w - rx!r}{arc} {x + w!r} {y + ry!r}"
-            f"V{y + h - ry!r}{arc} {x + w - rx!r} {y + h!r}"
-            f"H{x + rx!r}{arc} {x!r} {y + h - ry!r}V{y + ry!r}{arc} {x + rx!r} {y!r}Z"
-        )
-    middle, (rx, ry) = round_of(element, style, units)
-    x, y = middle.real, middle.imag
+        rx, ry = _radii(style, units)
+        rx, ry = min(rx, w / 2), min(ry, h / 2)
+    else:
+        middle, (rx, ry) = round_of(element, style, units)
+        x, y, w, h = middle.real - rx, middle.imag - ry, 2 * rx, 2 * ry
+    if w <= 0 or h <= 0:
+        return ""
+    if not rx or not ry:
+        return f"M{x!r} {y!r}H{x + w!r}V{y + h!r}H{x!r}Z"
     arc = f"A{rx!r} {ry!r} 0 0 1"
-    return f"M{x - rx!r} {y!r}{arc} {x + rx!r} {y!r}{arc} {x - rx!r} {y!r}Z" if rx and ry else ""
+    return (
+        f"M{x + rx!r} {y!r}H{x + w - rx!r}{arc} {x + w!r} {y + ry!r}"
+        f"V{y + h - ry!r}{arc} {x + w - rx!r} {y + h!r}"
+        f"H{x + rx!r}{arc} {x!r} {y + h - ry!r}V{y + ry!r}{arc} {x + rx!r} {y!r}Z"
+    )
 
 
 def round_of(element: Element, style: Mapping[str, str], units: Units) -> tuple[complex, Point]:
     """Middle and radii of a circle or an ellipse, in user units; 0 for one without a size."""
-    middle = units.place(style.get("cx"), style.get("cy"))
+    middle = units.place(style["cx"], style["cy"])
     if name_of(element) == "ellipse":
         return middle, _radii(style, units)
-    radius = max(units.length(style.get("r"), units.diagonal) or 0.0, 0.0)
+    radius = max(units.length(style["r"], units.diagonal) or 0.0, 0.0)
     return middle, (radius, radius)
 
 
 def _radii(style: Mapping[str, str], units: Units) -> Point:
     """Radii along x and y; one that is not given, or below 0, is like the other."""
-    rx, ry = (
-        -1.0 if length is None else length
-        for length in (
-            units.length(style.get("rx"), units.view[0]),
-            units.length(style.get("ry"), units.view[1]),
-        )
-    )
-    return max(rx if rx >= 0 else ry, 0.0), max(ry if ry >= 0 else rx, 0.0)
+    radii = units.length(style["rx"], units.view[0]), units.length(style["ry"], units.view[1])
+    rx, ry = (None if one is None or one < 0 else one for one in radii)
+    return rx if rx is not None else ry or 0.0, ry if ry is not None else rx or 0.0
 
 
 def contours_of(segments: Path, matrix: AffineMap, room: int = MOST_POINTS) -> list[Contour]:
@@ -252,11 +249,6 @@ def _too_tangled(rings: Sequence[Ring]) -> bool:
     return len(places) > _MOST_CUT or length > _MOST_DIAGONALS * math.hypot(*sides)
 
 
-def _refuse_tangled(rings: Sequence[Ring]) -> None:
-    if _too_tangled(rings):
-        raise ValueError("it has too many places or crossings to be cut")
-
-
 def filled(rings: list[Ring], rule: str) -> tuple[list[Ring], bool]:
     """Rings by which the even-odd rule fills an area.
 
@@ -291,7 +283,8 @@ def cut(rings: list[Ring], clip: list[Ring]) -> list[Ring]:
     """
     if not rings or not clip:
         return []
-    _refuse_tangled(rings)
+    if _too_tangled(rings):
+        raise ValueError(_NOT_CUT)
     clipper = pyclipper.Pyclipper()
     try:
         clipper.AddPaths(rings, pyclipper.PT_SUBJECT, True)
@@ -310,7 +303,8 @@ def stroked(contours: Sequence[Contour], width_mm: float) -> list[Ring]:
     ValueError
         If it takes too long to find it.
     """
-    _refuse_tangled([one.ring for one in contours])
+    if _too_tangled([one.ring for one in contours]):
+        raise ValueError(_NOT_CUT)
     offset = pyclipper.PyclipperOffset(2.0, _FLATNESS_MM * _PER_MM)
     for contour in contours:
         end = pyclipper.ET_CLOSEDLINE if contour.closed else pyclipper.ET_OPENROUND

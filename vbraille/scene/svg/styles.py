@@ -32,31 +32,39 @@ def _is_size(text: str) -> bool:
     return text == "auto" or is_length(text)
 
 
-# Properties that count, each with the check of its values, or the words that they may be; None for
-# any. A declaration with a value that is not understood counts as not written, so that the one
-# below it in the cascade holds.
-INHERITED: dict[str, Any] = {
-    **dict.fromkeys(("color", "fill", "stroke"), is_paint),
-    **dict.fromkeys(("fill-opacity", "stroke-opacity", "font-size", "stroke-width"), is_length),
-    **dict.fromkeys(("fill-rule", "clip-rule"), ("nonzero", "evenodd")),
-    "stroke-dasharray": _is_list,
-    "text-anchor": ("start", "middle", "end"),
-    "dominant-baseline": None,
-    "visibility": ("visible", "hidden", "collapse"),
-    **dict.fromkeys(("marker-start", "marker-mid", "marker-end")),
+# Properties that count, each with its value where none is written, and with the check of its values
+# or the words that they may be; None for any. A declaration with a value that is not understood
+# counts as not written, so that the one below it in the cascade holds.
+_INHERITED: dict[str, tuple[str, Any]] = {
+    "color": ("black", is_paint),
+    "fill": ("black", is_paint),
+    "stroke": ("none", is_paint),
+    **dict.fromkeys(("fill-opacity", "stroke-opacity", "stroke-width"), ("1", is_length)),
+    "font-size": ("16", is_length),
+    **dict.fromkeys(("fill-rule", "clip-rule"), ("nonzero", ("nonzero", "evenodd"))),
+    "stroke-dasharray": ("none", _is_list),
+    "text-anchor": ("start", ("start", "middle", "end")),
+    "dominant-baseline": ("auto", None),
+    "visibility": ("visible", ("visible", "hidden", "collapse")),
+    **dict.fromkeys(("marker-start", "marker-mid", "marker-end"), ("none", None)),
 }
 _PROPERTIES = {
-    **INHERITED,
-    **dict.fromkeys(("clip-path", "display", "filter", "mask", "transform", "transform-origin",
-                     "transform-box", "translate", "rotate", "scale", "vector-effect")),
-    **dict.fromkeys(("opacity", "stop-opacity", "x", "y", "cx", "cy", "r"), is_length),
-    **dict.fromkeys(("rx", "ry", "width", "height"), _is_size),
-    "stop-color": is_paint,
-    "overflow": ("visible", "hidden", "scroll", "auto"),
+    **_INHERITED,
+    **dict.fromkeys(("clip-path", "filter", "mask", "transform", "transform-box",
+                     "translate", "rotate", "scale", "vector-effect"), ("none", None)),
+    "display": ("inline", None),
+    "transform-origin": ("0 0", None),
+    **dict.fromkeys(("opacity", "stop-opacity"), ("1", is_length)),
+    **dict.fromkeys(("x", "y", "cx", "cy", "r"), ("0", is_length)),
+    **dict.fromkeys(("rx", "ry", "width", "height"), ("auto", _is_size)),
+    "stop-color": ("black", is_paint),
+    "overflow": ("visible", ("visible", "hidden", "scroll", "auto")),
 }  # fmt: skip
+INITIAL: Style = {name: value for name, (value, _) in _PROPERTIES.items()}
 _SHORTHANDS = {"marker": ("marker-start", "marker-mid", "marker-end")}
 # Attributes of these names are something else than the property.
 _NO_ATTRIBUTES = frozenset(("rotate", "scale", "translate"))
+_HIDING = frozenset(("svg", "symbol", "marker"))  # what is outside of their viewport
 _TEXTS = frozenset(("text", "tspan", "tref"))
 _MOST_CSS = 500_000  # characters
 _MOST_COMBINED = 4  # elements that a selector names, one within or after another
@@ -67,9 +75,9 @@ _MEDIA = frozenset(("", "all", "screen"))
 
 @lru_cache(maxsize=10_000)
 def _is_understood(name: str, value: str) -> bool:
-    check = _PROPERTIES[name]
+    _, check = _PROPERTIES[name]
     if check is None or value in ("inherit", "initial", "unset"):
-        return True
+        return bool(value)
     return bool(check(value)) if callable(check) else value in check
 
 
@@ -185,16 +193,16 @@ class StyleSheets:
                 self._note(
                     element, f"its {name} {short(value, 40)!r} is not understood; it is ignored"
                 )
-        found = {name: value for name, value in above.items() if name in INHERITED}
+        inherited = {name: above[name] for name in _INHERITED}
+        found = INITIAL | inherited
+        if name_of(element) in _HIDING and element.getparent() is not None:
+            found["overflow"] = "hidden"
         for name, value, _ in sorted(said, key=lambda one: one[2]):
-            if value == "inherit" or (value == "unset" and name in INHERITED):
-                value = above.get(name, "initial")
-            if value in ("initial", "unset"):
-                found.pop(name, None)
-                if name == "overflow":  # without a style, drawings in drawings hide what is outside
-                    found[name] = "visible"
+            if value == "inherit":
+                found[name] = above[name]
+            elif value in ("initial", "unset"):
+                found[name] = (INITIAL if value == "initial" else INITIAL | inherited)[name]
             else:
                 found[name] = value
-        if "font-size" in found:
-            found["font-size"] = repr(units.length(found["font-size"], units.font))
+        found["font-size"] = repr(units.length(found["font-size"], units.font) or units.font)
         return found

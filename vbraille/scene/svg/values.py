@@ -67,7 +67,7 @@ class Units:
 
     def sized(self, style: Mapping[str, str]) -> Units:
         """Units with the size of the letters that a style has."""
-        return replace(self, font=float(style.get("font-size", 16.0)))
+        return replace(self, font=float(style["font-size"]))
 
     @property
     def diagonal(self) -> float:
@@ -101,15 +101,9 @@ class Units:
         if unit in _UNITS:
             return token.value * _UNITS[unit]
         (width, height), font = self.page, self.font
-        sizes = {
-            "%": whole,
-            **dict.fromkeys(("em", "ic"), font * 100),
-            **dict.fromkeys(("ex", "ch"), font * 50),
-            **dict.fromkeys(("vw", "vi"), width),
-            **dict.fromkeys(("vh", "vb"), height),
-            "vmin": min(width, height),
-            "vmax": max(width, height),
-        }
+        sizes = {"%": whole, "em": font * 100, "ic": font * 100, "ex": font * 50, "ch": font * 50,
+                 "vw": width, "vi": width, "vh": height, "vb": height,
+                 "vmin": min(width, height), "vmax": max(width, height)}  # fmt: skip
         return token.value * sizes[unit] / 100
 
     def _sum(self, tokens: Sequence[Any], whole: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from operator import ne
 from random import Random
 from typing import Annotated, Literal, NamedTuple
 from unicodedata import normalize
@@ -71,43 +72,31 @@ class Items(Table, frozen=True, kw_only=True):
             The characters, as cells.
         """
         random = Random(f"items {self.rule} {self.seed}")
-        wanted = self.count or len(strings)
+        length, wanted = self.length or 1, self.count or len(strings)
         if self.rule == "words":
             tried = iter(random.sample(strings, len(strings)))
+        elif self.distinct:
+            most = min(length, len(cells))
+            tried = ("".join(random.sample(cells, most)) for _ in range(wanted * TRIES))
         else:
-            tried = (self._drawn(cells, random) for _ in range(wanted * TRIES))
+            tried = ("".join(random.choices(cells, k=length)) for _ in range(wanted * TRIES))
         found: list[str] = []
-        for string in tried:
-            if len(found) == wanted:
-                break
-            if self._fits(string, cells) and all(
-                _apart(string, o) >= self.differ_by for o in found
-            ):
+        while len(found) < wanted and (string := next(tried, None)) is not None:
+            fits = len(string) == self.length and string.strip("⠀ ") != ""
+            known = not cells or set(string) <= set(cells)
+            repeats = self.distinct and len(set(string)) < len(string)
+            apart = (sum(map(ne, string, other)) >= self.differ_by for other in found)
+            if fits and known and not repeats and all(apart):
                 found.append(string)
         if not found or (self.count and len(found) < self.count):
             raise WrongValue("count", f"only {len(found)} strings keep the rule; make it weaker")
         return found
 
-    def _drawn(self, cells: list[str], random: Random) -> str:
-        length = self.length or 1
-        if self.distinct:
-            return "".join(random.sample(cells, min(length, len(cells))))
-        return "".join(random.choices(cells, k=length))
-
-    def _fits(self, string: str, cells: list[str]) -> bool:
-        allowed = not cells or set(string) <= set(cells)
-        repeats = self.distinct and len(set(string)) < len(string)
-        return len(string) == self.length and allowed and not repeats and string.strip("⠀ ") != ""
-
-
-def _apart(one: str, other: str) -> int:
-    return sum(a != b for a, b in zip(one, other, strict=True))
-
 
 class OrderRow(NamedTuple):
     """Order of conditions, and the group, that a file gives a participant."""
 
-    conditions: tuple[str, ...]
+    conditions: list[str]
     group: str
 
 
@@ -124,12 +113,8 @@ def read_items(content: bytes, name: str) -> dict[str, dict[str, str]]:
     for line, row in zip(sheet.lines, sheet.records(), strict=True):
         string = normalize("NFC", row.pop(STRING))
         if not string or string in found:
-            why = (
-                f"{string!r} is there twice; repeats shows items more often"
-                if string
-                else "is empty"
-            )
-            raise InputError(f"{name} line {line}: {STRING} {why}")
+            again = "is empty, or there twice; repeats shows items more often"
+            raise InputError(f"{name} line {line}: {STRING} {string!r} {again}")
         found[string] = row
     return found
 
@@ -155,14 +140,12 @@ def read_orders(
     found: dict[str, OrderRow] = {}
     for line, row in zip(sheet.lines, sheet.records(), strict=True):
         who, group = row.pop(PARTICIPANT), row.pop(GROUP, "")
-        names = tuple(filter(None, row.values()))
+        names = list(filter(None, row.values()))
         if groups and group not in groups:
             raise InputError(f"{name} line {line}: group is {group!r}{which(group, groups)}")
         if sorted(names) != sorted(conditions) or who in found or not who:
-            each = ", ".join(conditions)
-            raise InputError(
-                f"{name} line {line}: give each participant once, with each of {each} once"
-            )
+            each = f"each participant once, with each of {', '.join(conditions)} once"
+            raise InputError(f"{name} line {line}: give {each}")
         found[who] = OrderRow(names, group)
     return found
 

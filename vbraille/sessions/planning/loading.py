@@ -16,10 +16,9 @@ from vbraille.braille.spelling import LETTERS, name_dots, spell, to_braille
 from vbraille.errors import InputError
 from vbraille.sessions.planning.analysis import MEASURES, Analysis
 from vbraille.sessions.planning.design import Compared, ItemList, Setting, StringList
-from vbraille.sessions.planning.factors import Condition
 from vbraille.sessions.planning.items import read_items, read_orders, read_words
 from vbraille.sessions.planning.procedures import QuestPlus, quest_of
-from vbraille.sessions.planning.protocol import Protocol, ProtocolFile
+from vbraille.sessions.planning.protocol import Condition, Protocol, ProtocolFile
 from vbraille.sessions.planning.trial import Stimulus
 from vbraille.toml import WrongValue, located, read_toml, which
 
@@ -356,7 +355,7 @@ def _check_shown(protocol: Protocol, condition: Condition) -> None:
         raise WrongValue(key, "has no table or scene, and others have; give it one, or [display]")
     table = protocol.procedure
     chosen = table.parameter if table is not None else None
-    if {protocol.design.parameter, chosen} & condition.given.keys():
+    if protocol.varied in condition.given:
         raise WrongValue(key, "sets what [design] or [procedure] varies; leave it out")
     looks = [look]
     if table is not None and chosen is not None:  # strings are checked at both ends

@@ -13,6 +13,7 @@ import numpy as np
 from msgspec import Struct, structs
 
 from vbraille.braille.cells import Cells, dots_of
+from vbraille.braille.spelling import to_braille
 from vbraille.errors import InputError
 from vbraille.sessions.planning.design import BLANK, Catch, Setting
 from vbraille.sessions.planning.order import Limit, balanced_orders, ordered
@@ -85,11 +86,10 @@ def make_plan(
     if look is not None:
         display = structs.replace(protocol.display, **look.given)
         protocol = structs.replace(protocol, display=display)
-    drawn = f"{protocol.name} {participant} {seed}" + (f" {session}" if session > 1 else "")
     group = _choose_group(protocol, participant, group)
-    if group:
-        protocol = protocol.of_group(group)
+    protocol = protocol.of_group(group)
     order = _choose_order(protocol, participant, order, session)
+    drawn = f"{protocol.name} {participant} {seed}" + (f" {session}" if session > 1 else "")
     random = Random(drawn)
     blocks = _deal(protocol, participant, order, random)
     try:
@@ -102,8 +102,12 @@ def make_plan(
         practice = _practice(protocol, Random(f"{drawn} practice"))
     except ValueError as error:
         raise InputError(f"{protocol.name}: {error}") from None
-    numbered = tuple(_numbered(practice) + _numbered(trials))
-    return Plan(participant, seed, order, group, numbered, session)
+    numbered = [
+        structs.replace(trial, number=number)
+        for part in (practice, trials)
+        for number, trial in enumerate(part, 1)
+    ]
+    return Plan(participant, seed, order, group, tuple(numbered), session)
 
 
 def check_participant(participant: str) -> None:
@@ -150,19 +154,18 @@ def _choose_order(protocol: Protocol, participant: str, order: int | None, sessi
 def _deal(protocol: Protocol, participant: str, order: int, random: Random) -> list[list[Placed]]:
     """Return the items and conditions of each block, not in order yet."""
     design, names = protocol.design, [condition.name for condition in protocol.conditions]
-    items = dict.fromkeys(names, protocol.items_shown * design.repeats)
+    shown = protocol.items_shown
+    items = dict.fromkeys(names, shown * design.repeats)
     if design.counterbalanced:
         # Each item is in one condition, which is the next one for the next participant.
-        shift = _number(participant)
+        shift, count = _number(participant), len(names)
         for n, name in enumerate(names):
-            items[name] = (
-                protocol.items_shown[(n + shift) % len(names) :: len(names)] * design.repeats
-            )
+            items[name] = shown[(n + shift) % count :: count] * design.repeats
     if design.blocks == "conditions":
         if protocol.block_order == "table":
             if participant not in protocol.orders:
                 raise InputError(f"the file of orders has no row for {participant}; add one")
-            names = list(protocol.orders[participant].conditions)
+            names = protocol.orders[participant].conditions
         elif order:
             names = [names[n] for n in balanced_orders(len(names))[order - 1]]
         elif protocol.block_order == "shuffled":
@@ -180,23 +183,20 @@ def _deal(protocol: Protocol, participant: str, order: int, random: Random) -> l
 def _rules(protocol: Protocol) -> tuple[list[Limit], Any]:
     """Return the limits of the rules, and the level that quarters share evenly, if any."""
     rules, limits = protocol.rules, []
-    if rules.never_twice_running:
-        reorder = getattr(protocol.design, "reorder", False)
-        limits.append(Limit(lambda shown: "".join(sorted(shown[0])) if reorder else shown[0], 1))
+    reorder = getattr(protocol.design, "reorder", False)
     levels = {each.name: protocol.levels(each.name, "") for each in protocol.conditions}
+
+    def level(name: str, shown: Placed) -> str:
+        """Return the condition of a trial, its level of a factor, or its cell of a column."""
+        item, condition = shown
+        own = protocol.columns.get(item, {}) | levels[condition] | {"condition": condition}
+        return own.get(name, "")
+
+    if rules.never_twice_running:
+        limits.append(Limit(lambda shown: "".join(sorted(shown[0])) if reorder else shown[0], 1))
     for name, most in rules.at_most_running.items():
-        limits.append(Limit(partial(_level, protocol.columns, levels, name), most))
+        limits.append(Limit(partial(level, name), most))
     return limits, (lambda shown: shown[1]) if rules.balanced_quarters else None
-
-
-def _level(
-    columns: dict[str, dict[str, str]], levels: dict[str, dict[str, str]], name: str, shown: Placed
-) -> str:
-    """Return the condition of a trial, its level of a factor, or its cell of a column."""
-    item, condition = shown
-    if name == "condition":
-        return condition
-    return levels[condition].get(name) or columns.get(item, {}).get(name, "")
 
 
 def _practice(protocol: Protocol, random: Random) -> list[Trial]:
@@ -230,25 +230,18 @@ def _with_catch(trials: list[Trial], catch: Catch, random: Random) -> list[Trial
     found: list[Trial] = []
     for first in range(0, len(trials), catch.stretch):
         part = trials[first : first + catch.stretch]
-        if len(part) < catch.stretch:
-            return found + part
-        after = random.randrange(len(part)) + 1
-        found += [*part[:after], _caught(part[after - 1], catch), *part[after:]]
+        if len(part) == catch.stretch:
+            after = random.randrange(len(part)) + 1
+            caught = structs.replace(part[after - 1], catch=catch.show)
+            if catch.show == "blank":
+                blank = tuple(
+                    structs.replace(each, cells=BLANK * len(each.cells), text="")
+                    for each in caught.stimuli
+                )
+                caught = structs.replace(caught, stimuli=blank, columns={})
+            part.insert(after, caught)
+        found += part
     return found
-
-
-def _caught(trial: Trial, catch: Catch) -> Trial:
-    """Return the catch trial that comes after a trial."""
-    if catch.show == "repeat":
-        return structs.replace(trial, catch=catch.show)
-    stimuli = tuple(
-        structs.replace(each, cells=BLANK * len(each.cells), text="") for each in trial.stimuli
-    )
-    return structs.replace(trial, stimuli=stimuli, catch=catch.show, columns={})
-
-
-def _numbered(trials: list[Trial]) -> list[Trial]:
-    return [structs.replace(trial, number=number) for number, trial in enumerate(trials, 1)]
 
 
 def length_s(protocol: Protocol, plan: Plan) -> float:
@@ -279,12 +272,11 @@ def plan_lines(protocol: Protocol, plan: Plan) -> Iterator[str]:
     if plan.group:
         yield f"group: {plan.group}"
     yield f"analysis: {protocol.analysis.said()}"
-    minutes = max(1, round(length_s(protocol, plan) / 60))
-    felt = protocol.trial.exposure_s
-    up_to = (
-        f", with trials of up to {felt:g} s" if felt else ", if people read as those of the source"
+    minutes, felt_s = max(1, round(length_s(protocol, plan) / 60)), protocol.trial.exposure_s
+    read = (
+        f"with trials of up to {felt_s:g} s" if felt_s else "if people read as those of the source"
     )
-    yield f"length: about {minutes} min{up_to}"
+    yield f"length: about {minutes} min, {read}"
     if protocol.procedure is not None:
         yield "values: chosen by the answers; those of the plan are not shown"
     block = 0
@@ -303,11 +295,10 @@ def to_brf(protocol: Protocol, plan: Plan) -> str:
     InputError
         If what is shown is no string, or has dots 7 or 8.
     """
-    tested = [trial for trial in plan.trials if not trial.practice]
-    if any(trial.values for trial in tested):
+    strings = [each for trial in plan.trials if not trial.practice for each in trial.stimuli]
+    if any(each.value is not None for each in strings):
         raise InputError(f"{protocol.name} compares values, which cannot be embossed")
-    strings = [stimulus for trial in tested for stimulus in trial.stimuli]
-    if any(stimulus.picture for stimulus in strings):
+    if any(each.picture for each in strings):
         raise InputError(f"{protocol.name} shows pictures, which are no braille")
     try:
         lines = [Cells.bare(np.array(each.masks(0), np.uint8)).to_brf() for each in strings]
@@ -329,8 +320,7 @@ def _described(trial: Trial) -> Iterator[str]:
     elif first.picture:
         yield first.picture
     else:
-        lines = (each.before + each.cells + each.after for each in trial.stimuli)
-        yield " / ".join(lines)
+        yield " / ".join(to_braille(each.masks(0)) for each in trial.stimuli)
         yield "dots " + " / ".join(_dots(each.masks(0)) for each in trial.stimuli)
 
 

@@ -249,16 +249,12 @@ def put(table: Procedure, design: AnyDesign, trial: Trial, level: Level) -> Tria
 def outcome_of(
     design: AnyDesign, question: Question, trial: Trial, level: float, answer: str, t_s: float
 ) -> Outcome:
-    """Return what an answer tells a procedure.
+    """Return what an answer to a trial, as it was shown, tells a procedure.
 
     Parameters
     ----------
-    trial
-        The trial as it was shown.
     level
-        Value that a string was shown at.
-    answer, t_s
-        The answer, and when it was given.
+        Value of what the procedure varies, if a string was shown.
     """
     positive = question.positive(trial, answer)
     if not isinstance(design, Compared):

@@ -6,6 +6,7 @@ Ranges of values stand in the types. What several tables together can get wrong 
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterable
 from typing import Annotated, Any, Literal
@@ -18,7 +19,6 @@ from vbraille.display import Display
 from vbraille.render import MODELS, BrailleStyle, Model
 from vbraille.sessions.planning.analysis import Analysis
 from vbraille.sessions.planning.design import AnyDesign, Compared, values_said
-from vbraille.sessions.planning.factors import Condition, Cross, Factor, crossed
 from vbraille.sessions.planning.items import Items, OrderRow
 from vbraille.sessions.planning.procedures import AnyProcedure
 from vbraille.sessions.planning.questionnaire import Item
@@ -56,6 +56,62 @@ class DisplayLook(Look, frozen=True, kw_only=True):
 
     lead_cells: Annotated[int, Meta(ge=0, le=MOST_LEAD_CELLS)] = 1
     travel_mm: Annotated[float, Meta(gt=0, le=5000)] | None = None
+
+
+Cross = Literal["all"] | tuple[tuple[str, ...], ...]
+
+
+class Condition(Look, frozen=True, kw_only=True):
+    """A condition, or a level of a factor: its name, and what it changes of the display."""
+
+    name: Label
+
+
+class Factor(Table, frozen=True, kw_only=True):
+    """A factor.
+
+    Parameters
+    ----------
+    name
+        Name, which is that of a column, after "factor_".
+    levels
+        Two or more levels.
+    between
+        Whether each participant has one of the levels, and not all.
+    """
+
+    name: Label
+    levels: Annotated[tuple[Condition, ...], Meta(min_length=2)]
+    between: bool = False
+
+
+def crossed(
+    factors: tuple[Factor, ...], cross: Cross, *, between: bool
+) -> list[tuple[Condition, dict[str, str]]]:
+    """Return the combinations of the factors within participants, or between them.
+
+    Parameters
+    ----------
+    cross
+        "all", or the combinations that are shown, each as levels of all factors in their order.
+
+    Returns
+    -------
+    list
+        Each combination as a condition, and its level of each factor.
+    """
+    own = [factor for factor in factors if factor.between == between]
+    shown = [] if cross == "all" else cross
+    listed = [
+        dict(zip((factor.name for factor in factors), each, strict=False)).items() for each in shown
+    ]
+    found = []
+    for levels in itertools.product(*(factor.levels for factor in own)):
+        names = {factor.name: level.name for factor, level in zip(own, levels, strict=True)}
+        if cross == "all" or any(names.items() <= each for each in listed):
+            look = {key: value for level in levels for key, value in level.given.items()}
+            found.append((Condition(name="-".join(names.values()), **look), names))
+    return found
 
 
 class Order(Table, frozen=True, kw_only=True):
@@ -355,6 +411,11 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
         if self.design.passage:
             return Read()
         return Which() if isinstance(self.design, Compared) else Identify()
+
+    @property
+    def varied(self) -> str:
+        """Parameter that stimuli are compared by, or that a procedure varies; empty for none."""
+        return self.design.parameter or getattr(self.procedure, "parameter", None) or ""
 
     @property
     def block_order(self) -> str:

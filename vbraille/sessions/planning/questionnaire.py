@@ -7,7 +7,9 @@ import re
 from collections.abc import Iterator
 from typing import Literal
 
-from vbraille.sessions.planning.questions import Scale
+from msgspec import structs
+
+from vbraille.sessions.planning.questions import Scale, parse_number
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.planning.values import Label, Number, Sentence
 from vbraille.toml import Table, WrongValue
@@ -80,9 +82,9 @@ class Item(Table, frozen=True, kw_only=True):
             return COLUMN.sub(lambda found: columns.get(found[1], ""), text)
 
         choices = tuple(map(filled, self.choices))
-        fields = {name: getattr(self, name) for name in self.__struct_fields__}
-        fields |= {"ask": filled(self.ask), "choices": choices, "right": filled(self.right)}
-        return Item(**fields)
+        return structs.replace(
+            self, ask=filled(self.ask), choices=choices, right=filled(self.right)
+        )
 
     @property
     def typed(self) -> str:
@@ -103,24 +105,16 @@ class Item(Table, frozen=True, kw_only=True):
         if self.kind == "rating":
             return str(self._scale.parse(word))
         if self.kind == "number":
-            return self._number(word)
+            least = -math.inf if self.least is None else self.least
+            return parse_number(
+                word, least, math.inf if self.most is None else self.most, self.typed
+            )
         for choice in self.choices:
             if word.casefold() == choice.casefold():
                 return choice
         if self.choices or not word:
             raise ValueError(f"{word!r} is not an answer; type {self.typed}")
         return word
-
-    def _number(self, word: str) -> str:
-        try:
-            number = float(word.replace(",", "."))
-        except ValueError:
-            number = math.nan
-        least = -math.inf if self.least is None else self.least
-        most = math.inf if self.most is None else self.most
-        if not (least <= number <= most and math.isfinite(number)):
-            raise ValueError(f"{word!r} is not an answer; type {self.typed}")
-        return f"{number:.15g}"
 
     def simulate(self) -> str:
         """Give the right answer, or the first that there may be."""

@@ -39,6 +39,7 @@ HIT, MISS, FALSE_ALARM, REJECTION = "hit", "miss", "false alarm", "correct rejec
 GOOD = frozenset((RIGHT, HIT, REJECTION))
 LEAST_SHARE = 1e-3  # a magnitude may not be 0
 MOST_STEPS = 100
+LEAST_NUMBER = math.ulp(0.0)  # above 0
 
 
 class Spelling(NamedTuple):
@@ -85,6 +86,17 @@ class Scale(Table, frozen=True, kw_only=True):
         if not known or not self.least <= int(word) <= self.most:
             raise ValueError(f"{word!r} is not on the scale; type {self.typed}")
         return int(word)
+
+
+def parse_number(text: str, least: float, most: float, typed: str) -> str:
+    """Read a number with a point or a comma; ValueError if it is none, or out of bounds."""
+    try:
+        number = float(text.strip().replace(",", "."))
+    except ValueError:
+        number = math.nan
+    if not (least <= number <= most and math.isfinite(number)):
+        raise ValueError(f"{text.strip()!r} is not an answer; type {typed}")
+    return f"{number:.15g}"
 
 
 class Question(Table, frozen=True, kw_only=True, tag_field="kind"):
@@ -325,41 +337,41 @@ def _drawn(felt: FeltTrial, noise: float, random: np.random.Generator) -> np.nda
 
 
 class OneOfTwo(Question, frozen=True, kw_only=True):
-    """Asks for one of two words, which may be typed by their first letters."""
+    """Asks for one of two words, of which the first is right where there is a signal."""
 
     words: ClassVar[tuple[str, str]]
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
-        """Read one of the words."""
+        """Read one of the words, or its first letter."""
         for word in self.words:
             if text.strip().casefold() in (word, word[0]):
                 return word
         raise ValueError(f"{text.strip()!r} is not an answer; type {self.typed}")
+
+    def has_signal(self, trial: Trial) -> bool | None:
+        """Tell whether a trial has a signal; None if nothing is right."""
+        return None
+
+    def right_answer(self, trial: Trial) -> str:
+        """Return the word that is right."""
+        return {True: self.words[0], False: self.words[1], None: ""}[self.has_signal(trial)]
+
+    def outcome(self, trial: Trial, answer: str) -> str:
+        """Return hit, miss, false alarm or correct rejection."""
+        first = answer == self.words[0]
+        match self.has_signal(trial):
+            case None:
+                return ""
+            case True:
+                return HIT if first else MISS
+        return FALSE_ALARM if first else REJECTION
 
     def guess(self, trial: Trial, random: np.random.Generator) -> str:
         """Say either word."""
         return self.words[random.integers(2)]
 
 
-class Signal(OneOfTwo, frozen=True, kw_only=True):
-    """Asks for one of two words, of which the first is right where there is a signal."""
-
-    def has_signal(self, trial: Trial) -> bool:
-        """Tell whether a trial has a signal."""
-        raise NotImplementedError
-
-    def right_answer(self, trial: Trial) -> str:
-        """Return the word that is right."""
-        return self.words[0] if self.has_signal(trial) else self.words[1]
-
-    def outcome(self, trial: Trial, answer: str) -> str:
-        """Return hit, miss, false alarm or correct rejection."""
-        if self.has_signal(trial):
-            return HIT if answer == self.words[0] else MISS
-        return FALSE_ALARM if answer == self.words[0] else REJECTION
-
-
-class Same(Signal, frozen=True, kw_only=True, tag="same-different"):
+class Same(OneOfTwo, frozen=True, kw_only=True, tag="same-different"):
     """Asks whether two stimuli were the same or different."""
 
     asks_of = ("pairs",)
@@ -380,7 +392,7 @@ class Same(Signal, frozen=True, kw_only=True, tag="same-different"):
         return "different" if abs(apart) > max(noise * math.sqrt(2), TIE) else "same"
 
 
-class Detect(Signal, frozen=True, kw_only=True, tag="detect"):
+class Detect(OneOfTwo, frozen=True, kw_only=True, tag="detect"):
     """Asks whether there was anything."""
 
     asks_of = ("strings",)
@@ -431,7 +443,6 @@ class Rate(Question, frozen=True, kw_only=True, tag="rating"):
 
     @property
     def _steps(self) -> Scale:
-        """The scale."""
         return Scale(least=self.least, most=self.most, labels=self.labels)
 
     @property
@@ -479,13 +490,7 @@ class Magnitude(Question, frozen=True, kw_only=True, tag="magnitude"):
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
         """Read a number with a point or a comma."""
-        try:
-            number = float(text.strip().replace(",", "."))
-        except ValueError:
-            number = math.nan
-        if not 0 < number < math.inf:
-            raise ValueError(f"{text.strip()!r} is not an answer; type a number above 0")
-        return f"{number:.15g}"
+        return parse_number(text, LEAST_NUMBER, math.inf, "a number above 0")
 
     def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
         """Give the strength times the modulus."""

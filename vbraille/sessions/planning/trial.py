@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 from msgspec import Struct, structs
@@ -46,6 +47,11 @@ class Stimulus(Struct, frozen=True, omit_defaults=True):
     def is_blank(self) -> bool:
         """Tell whether there is nothing to feel in what is asked for."""
         return self.look.contrast == 0 or not set(self.cells) - {chr(UNICODE_BLANK)}
+
+    def at(self, parameter: str, value: float) -> Stimulus:
+        """Return the stimulus with another value of a parameter, by which it may be compared."""
+        compared = value if self.value is not None else None
+        return structs.replace(self, look=self.look.changed(parameter, value), value=compared)
 
     def masks(self, lead_cells: int) -> list[int]:
         """Return the dot masks of the whole line, with blank cells before it."""
@@ -116,22 +122,15 @@ class Trial(Struct, frozen=True):
             return " ".join(f"{value:g}" for value in self.values)
         return self.stimuli[0].picture or self.cells
 
-    def with_values(self, parameter: str, values: tuple[float, ...]) -> Trial:
-        """Return the trial with other values of the stimuli that are compared."""
-        stimuli = tuple(
-            structs.replace(each, look=each.look.changed(parameter, value), value=value)
-            for each, value in zip(self.stimuli, values, strict=True)
-        )
-        return structs.replace(self, stimuli=stimuli)
+    def with_values(self, parameter: str, values: Sequence[float]) -> Trial:
+        """Return the trial with other values of its stimuli."""
+        pairs = zip(self.stimuli, values, strict=True)
+        return structs.replace(self, stimuli=tuple(each.at(parameter, v) for each, v in pairs))
 
     def turned(self, parameter: str, value: float) -> Trial:
         """Return the trial with its last stimulus at another value."""
-        *others, _ = self.values
-        return self.with_values(parameter, (*others, value))
+        return self.with_values(parameter, [*self.values[:-1], value])
 
     def at(self, parameter: str, value: float) -> Trial:
-        """Return the trial with a number of its look changed, which is not compared."""
-        stimuli = tuple(
-            structs.replace(each, look=each.look.changed(parameter, value)) for each in self.stimuli
-        )
-        return structs.replace(self, stimuli=stimuli)
+        """Return the trial with all its stimuli at a value."""
+        return self.with_values(parameter, [value] * len(self.stimuli))

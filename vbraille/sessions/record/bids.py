@@ -23,10 +23,9 @@ from numpy.typing import NDArray
 from vbraille.errors import InputError
 from vbraille.files import write_files
 from vbraille.names import likeness
-from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.record.record import Content, Event, read, reading
 from vbraille.sessions.record.ticks import read_all
-from vbraille.sessions.record.trials import Column, codebook, protocol_of, rows, to_csv
+from vbraille.sessions.record.trials import COLUMNS_OF, Column, codebook, protocol_of, rows, to_csv
 
 DATASET, README = "dataset_description.json", "README"
 PEOPLE, PSEUDONYM = "participants.tsv", "pseudonym"
@@ -39,38 +38,21 @@ session that was stopped and gone on with has several runs. *_beh.tsv has a row 
 *_events.tsv what happened in a run, and *_recording-carriage_physio.tsv.gz where the array was at
 each moment. The file of the same name that ends in .json says what each column holds.
 """
-EVENTS = {
-    "onset": Column("from the first row of the run's recording", "s"),
-    "duration": Column("no event has one that is known", "s"),
-    "trial_type": Column("what happened, by the kinds of docs/session-format.md"),
-    "practice": Column("1 in a trial of practice, else 0"),
-    "trial": Column("number of the trial that it happened in"),
-    "value": Column("answer, reply, note, or what else the event says"),
-}
-# Columns of a recording: field of the ticks, its format, and what it holds.
-RECORDED = {
-    "x_mm": ("x_mm", "%.6g", Column("place of the array's centre along the line", "mm")),
-    "y_mm": ("y_mm", "%.6g", Column("place across the lines; 0 if not measured", "mm")),
-    "speed_mm_s": ("vx_mm_s", "%.6g", Column("of the hand, to the right", "mm/s")),
-    "frame": ("tick", "%d", Column("number of the frame, from 0")),
-    "line": ("line", "%d", Column("number of what was shown last; 0 before the first")),
-    "flags": ("flags", "%d", Column("bits, as docs/session-format.md has them")),
-}
+EVENTS, RECORDED = COLUMNS_OF["events"], COLUMNS_OF["recording"]
+# Fields of the ticks that a recording's columns are, and their formats.
+FIELDS = {"x_mm": "%.6g", "y_mm": "%.6g", "vx_mm_s": "%.6g", "tick": "%.12g", "line": "%.12g",
+          "flags": "%.12g"}  # fmt: skip
 SAID = ("answer", "confidence", "reply", "text", "what", "why", "by")
 WORDS = ("reply", "text", "why", "what")  # what anonymous datasets leave out
 
 
-def export_bids(
-    paths: Iterable[Path], folder: Path, *, anonymous: bool = False, session_by: str = ""
-) -> list[Path]:
+def export_bids(paths: Iterable[Path], folder: Path, *, anonymous: bool = False) -> list[Path]:
     """Add sessions to a dataset, which is begun if there is none, and return the files written.
 
     Parameters
     ----------
     anonymous
         Whether times of day, notes, words and names of files are left out.
-    session_by
-        Field whose answer is the label of the session; by default they are numbered.
 
     Raises
     ------
@@ -79,9 +61,9 @@ def export_bids(
         cannot be written. The sessions before it are whole in the dataset.
     """
     written: list[Path] = []
-    contents = [(path, read(path)) for path in paths]
-    for path, content in sorted(contents, key=lambda each: (each[1].plan.participant, each[0])):
-        written += _add(path, content, folder, anonymous, session_by)
+    contents = [read(path) for path in paths]
+    for content in sorted(contents, key=lambda each: (each.plan.participant, each.path)):
+        written += _add(content, folder, anonymous)
     return written
 
 
@@ -90,44 +72,33 @@ def label_of(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9]", "", name)
 
 
-def _add(
-    path: Path, content: Content, folder: Path, anonymous: bool, session_by: str
-) -> list[Path]:
-    people = _read_people(folder)
-    pseudonym, number = content.plan.participant, content.events[0].data["plan"]
-    label = label_of(pseudonym)
-    alike = likeness(pseudonym, person=True)
+def _add(content: Content, folder: Path, anonymous: bool) -> list[Path]:
+    """Add a session to a dataset."""
+    people, who = _read_people(folder), content.plan.participant
+    label, alike = label_of(who), likeness(who, person=True)
     for other in people.values():
-        if other != pseudonym and likeness(other, person=True) == alike:
-            raise InputError(f"{folder} has {other}, who is hard to tell from {pseudonym}")
+        if other != who and likeness(other, person=True) == alike:
+            raise InputError(f"{folder} has {other}, who is hard to tell from {who}")
     for told in folder.glob("sub-*/ses-*/beh/*_beh.json"):
-        if json.loads(told.read_text("utf-8")).get(SUM) == number:
-            raise InputError(f"{path} is there already, as {told.with_suffix('.tsv')}")
-    session = label_of(str(content.head["fields"].get(session_by, "")))
-    if session_by and not session:
-        raise InputError(f"{path} has no answer to {session_by!r} that could name its session")
-    if not session:
-        known = [path.name[4:] for path in (folder / f"sub-{label}").glob("ses-*")]
-        session = f"{max((int(n) for n in known if n.isdecimal()), default=0) + 1:02}"
-    task = label_of(content.head["protocol"])
-    home = folder / f"sub-{label}" / f"ses-{session}" / "beh"
-    stem = f"sub-{label}_ses-{session}_task-{task}"
-    files = {home / name: made for name, made in _files(path, content, stem, anonymous).items()}
+        if json.loads(told.read_text("utf-8")).get(SUM) == content.events[0].data["plan"]:
+            raise InputError(f"{content.path} is there already, as {told.with_suffix('.tsv')}")
+    known = [path.name[4:] for path in (folder / f"sub-{label}").glob("ses-*")]
+    number = max((int(name) for name in known if name.isdecimal()), default=0) + 1
+    home = folder / f"sub-{label}" / f"ses-{number:02}" / "beh"
+    stem = f"sub-{label}_ses-{number:02}_task-{label_of(content.head['protocol'])}"
+    files = {home / name: made for name, made in _files(content, stem, anonymous).items()}
     about = {
         "Name": "vbraille sessions", "BIDSVersion": "1.9.0", "DatasetType": "raw",
         "GeneratedBy": [{"Name": "vbraille", "Version": version("vbraille")}],
     }  # fmt: skip
-    column = {PSEUDONYM: {"Description": "as the laboratory has it"}}
-    for name, made in (
-        (DATASET, _json(about)),
-        (README, README_TEXT.encode()),
-        ("participants.json", _json(column)),
-    ):  # fmt: skip
-        if not (folder / name).exists():
-            files[folder / name] = made
-    table = [{"participant_id": f"sub-{of}", PSEUDONYM: who} for of, who in people.items()]
-    if label not in people:
-        table.append({"participant_id": f"sub-{label}", PSEUDONYM: pseudonym})
+    whole = {
+        DATASET: _json(about),
+        README: README_TEXT.encode(),
+        "participants.json": _json({PSEUDONYM: {"Description": "as the laboratory has it"}}),
+    }
+    files |= {folder / name: made for name, made in whole.items() if not (folder / name).exists()}
+    people |= {label: who}
+    table = [{"participant_id": f"sub-{of}", PSEUDONYM: name} for of, name in people.items()]
     try:
         home.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -148,29 +119,34 @@ def _read_people(folder: Path) -> dict[str, str]:
     return {label.removeprefix("sub-"): who for label, who in found[1:]}
 
 
-def _files(path: Path, content: Content, stem: str, anonymous: bool) -> dict[str, bytes]:
+def _files(content: Content, stem: str, anonymous: bool) -> dict[str, bytes]:
     """Return the files of a session by their names."""
-    protocol, table = protocol_of(content), rows(path, anonymous=anonymous)
+    protocol, table = protocol_of(content), rows(content.path, anonymous=anonymous)
+    described = {
+        SUM: content.events[0].data["plan"],
+        "TaskName": protocol.name,
+        "TaskDescription": f"{protocol.title} ({protocol.source})",
+    }
     made = {
         f"{stem}_beh.tsv": to_csv(table, "\t", "n/a").encode(),
-        f"{stem}_beh.json": _json(_described(content, protocol, table)),
+        f"{stem}_beh.json": _json(described | _told(codebook(table[0], protocol))),
     }
     starts = [event.n for event in content.events if event.kind == "run"]
-    with reading(path) as db:
+    with reading(content.path) as db:
         for number, (first, end) in enumerate(pairwise([*starts, content.events[-1].n + 1]), 1):
             events = [event for event in content.events if first <= event.n < end]
             name = f"{stem}_run-{number:02}"
             ticks = read_all(db, first - 1, end)
             made[f"{name}_events.tsv"] = _events(events, ticks, anonymous)
-            made[f"{name}_events.json"] = _json({n: c.to_bids() for n, c in EVENTS.items()})
+            made[f"{name}_events.json"] = _json(_told(EVENTS))
             if ticks.size:
                 conditions = events[0].data.get("conditions", {})
-                name += "_recording-carriage_physio"
-                made[f"{name}.tsv.gz"] = _recording(ticks)
-                told = {name: column.to_bids() for name, (_, _, column) in RECORDED.items()}
                 rate_hz = conditions.get("rate_hz", 1000.0)
                 sampled = {"SamplingFrequency": rate_hz, "StartTime": 0.0}
-                made[f"{name}.json"] = _json(sampled | {"Columns": list(RECORDED)} | told)
+                sampled |= {"Columns": list(RECORDED)} | _told(RECORDED)
+                name += "_recording-carriage_physio"
+                made[f"{name}.tsv.gz"] = _recording(ticks)
+                made[f"{name}.json"] = _json(sampled)
     return made
 
 
@@ -178,29 +154,28 @@ def _json(content: dict[str, Any]) -> bytes:
     return (json.dumps(content, ensure_ascii=False, indent=2) + "\n").encode()
 
 
-def _described(content: Content, protocol: Protocol, table: list[dict[str, Any]]) -> dict[str, Any]:
-    found: dict[str, Any] = {
-        SUM: content.events[0].data["plan"],
-        "TaskName": protocol.name,
-        "TaskDescription": f"{protocol.title} ({protocol.source})",
-    }
-    told = codebook(table[0], protocol)
-    return found | {name: column.to_bids() for name, column in told.items()}
+def _told(columns: dict[str, Column]) -> dict[str, dict[str, Any]]:
+    """Return what columns hold, as the JSON beside a table has it."""
+    found = {}
+    for name, (meaning, unit, values) in columns.items():
+        found[name] = {"Description": meaning} | ({"Units": unit} if unit else {})
+        if values:
+            found[name]["Levels"] = {value: value for value in values.split(", ")}
+    return found
 
 
 def _events(events: list[Event], ticks: NDArray[np.void], anonymous: bool) -> bytes:
     """Return the events of a run, whose times count from its first tick."""
     began_s = events[0].t_s
     for event in events:
-        if "tick" in event.data and ticks.size:
-            (at,) = np.flatnonzero(ticks["tick"] == event.data["tick"])[:1] or (0,)
-            began_s = event.t_s - float(ticks["time_ns"][at] - ticks["time_ns"][0]) / 1e9
+        at = np.flatnonzero(ticks["tick"] == event.data.get("tick", -1)) if ticks.size else ticks
+        if at.size:
+            began_s = event.t_s - float(ticks["time_ns"][at[0]] - ticks["time_ns"][0]) / 1e9
             break
     table = []
     for event in events[1:]:
         said = [str(event.data[name]) for name in SAID if event.data.get(name) not in (None, "")]
-        if anonymous and any(name in event.data for name in WORDS):
-            said = []
+        hidden = anonymous and any(name in event.data for name in WORDS)
         table.append(
             {
                 "onset": round(event.t_s - began_s, 6),
@@ -208,7 +183,7 @@ def _events(events: list[Event], ticks: NDArray[np.void], anonymous: bool) -> by
                 "trial_type": event.kind,
                 "practice": int(bool(event.practice)),
                 "trial": event.trial or "",
-                "value": "; ".join(said),
+                "value": "" if hidden else "; ".join(said),
             }
         )
     table.sort(key=lambda row: row["onset"])
@@ -217,15 +192,9 @@ def _events(events: list[Event], ticks: NDArray[np.void], anonymous: bool) -> by
 
 def _recording(ticks: NDArray[np.void]) -> bytes:
     """Return ticks as a table with a row for each deadline; n/a where one was missed."""
-    due = ticks["tick"] + ticks["late"]
-    form = "\t".join(form for _, form, _ in RECORDED.values()) + "\n"
-    missing = "\t".join(["n/a"] * len(RECORDED)) + "\n"
-    packed = io.BytesIO()
-    with gzip.GzipFile(fileobj=packed, mode="wb", compresslevel=3, mtime=0) as file:
-        after = int(due[0])
-        columns = [ticks[field].tolist() for field, _, _ in RECORDED.values()]
-        for number, values in enumerate(zip(*columns, strict=True)):
-            file.write((missing * max(int(due[number]) - after, 0)).encode())
-            file.write((form % values).replace("nan", "n/a").encode())
-            after = int(due[number]) + 1
-    return packed.getvalue()
+    due = ticks["tick"] + ticks["late"] - ticks["tick"][0] - ticks["late"][0]
+    table = np.full((due[-1] + 1, len(FIELDS)), np.nan)
+    table[due] = np.column_stack([ticks[field] for field in FIELDS])
+    text = io.BytesIO()
+    np.savetxt(text, table, [*FIELDS.values()], "\t")
+    return gzip.compress(text.getvalue().replace(b"nan", b"n/a"), 3, mtime=0)

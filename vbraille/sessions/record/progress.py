@@ -60,7 +60,6 @@ class Progress:
         self._in_conditions: defaultdict[str, list[Trial]] = defaultdict(list)
         for trial in self._trials:
             self._in_conditions[trial.condition].append(trial)
-        self._first = 0  # no trial before that place of the plan is open
         self._outcomes: dict[str, list[Outcome]] = {}
         for event in events:
             self.take(event)
@@ -102,8 +101,6 @@ class Progress:
         elif event.kind == "missed":
             self.missed.add(key)
             self._broken = False
-        else:
-            self._first = 0
 
     @property
     def t_s(self) -> float:
@@ -118,13 +115,9 @@ class Progress:
     @property
     def next_trial(self) -> Trial | None:
         """The first trial that is not over, as it is shown; None after the last."""
-        for place in range(self._first, len(self.plan.trials)):
-            trial = self.plan.trials[place]
-            if self._is_over(trial):
-                self._first += place == self._first
-            elif trial.practice and self.practice_is_over:
-                continue
-            elif (shown := self.shown(trial)) is not None:
+        for trial in self.plan.trials:
+            left = not (self._is_over(trial) or (trial.practice and self.practice_is_over))
+            if left and (shown := self.shown(trial)) is not None:
                 return shown
         return None
 
@@ -139,54 +132,40 @@ class Progress:
 
     def shown(self, trial: Trial) -> Trial | None:
         """Return a trial of the plan as it is shown; None if a procedure leaves it out."""
-        procedure, design = self.protocol.procedure, self.protocol.design
-        if self._was_decided(trial):
-            cues = self._cues(trial)
-            if trial.values and cues:
-                return trial.with_values(design.parameter, tuple(self._values(trial, cues)))
-            if procedure is not None and cues and cues[-1].data.get("value") is not None:
-                return trial.at(procedure.parameter or "", cues[-1].data["value"])
-            return trial
+        procedure, varied = self.protocol.procedure, self.protocol.varied
+        events = self.events.get(trial.key, ())
+        if any(event.kind in DECIDING for event in events):
+            newest = max(event.attempt or 0 for event in events)
+            cues = [e.data for e in events if e.kind == "cue" and e.attempt == newest]
+            if not varied or not cues:
+                return trial
+            if not trial.values:
+                return trial.at(varied, cues[-1]["value"])
+            values = dict(enumerate(trial.values))
+            values |= {cue["stimulus"]: cue["value"] for cue in cues}  # the last one of each
+            return trial.with_values(varied, list(values.values()))
         if procedure is None or trial.practice or trial.catch:
             return trial
         history = self._history(trial.condition)
-        level = procedure.next(design, history, self._seed(trial.condition))
-        return None if level is None else put(procedure, design, trial, level)
-
-    def _was_decided(self, trial: Trial) -> bool:
-        return any(event.kind in DECIDING for event in self.events.get(trial.key, ()))
-
-    def _cues(self, trial: Trial) -> list[Event]:
-        """Return the cues of the newest attempt at a trial."""
-        events = self.events.get(trial.key, ())
-        newest = max((event.attempt or 0 for event in events), default=0)
-        return [event for event in events if event.kind == "cue" and event.attempt == newest]
-
-    def _values(self, trial: Trial, cues: list[Event]) -> list[float]:
-        """Return the values that the stimuli of a trial were shown at last."""
-        values = trial.values
-        for cue in cues:
-            values[cue.data["stimulus"]] = cue.data["value"]
-        return values
+        level = procedure.next(self.protocol.design, history, self._seed(trial.condition))
+        return None if level is None else put(procedure, self.protocol.design, trial, level)
 
     def _seed(self, condition: str) -> str:
         return f"{self.protocol.name} {self.plan.participant} {self.plan.seed} {condition}"
 
     def _history(self, condition: str) -> list[Outcome]:
         """Return what the answers of a condition tell a procedure."""
-        found = self._outcomes.get(condition)
-        if found is None:
+        if condition not in self._outcomes:
             found = self._outcomes[condition] = []
+            asks, design = self.protocol.asks, self.protocol.design
             for trial in self._in_conditions[condition]:
                 event = self.answers.get(trial.key)
-                shown = self.shown(trial) if event is not None and not trial.catch else None
+                shown = None if event is None or trial.catch else self.shown(trial)
                 if event is not None and shown is not None:
-                    level = self._cues(trial)[-1].data["value"]
-                    asks, answer = self.protocol.asks, event.data["answer"]
-                    found.append(
-                        outcome_of(self.protocol.design, asks, shown, level, answer, event.t_s)
-                    )
-        return found
+                    level = getattr(shown.stimuli[0].look, self.protocol.varied)
+                    given = event.data["answer"], event.t_s
+                    found.append(outcome_of(design, asks, shown, level, *given))
+        return self._outcomes[condition]
 
     @property
     def found(self) -> list[str]:
@@ -206,14 +185,6 @@ class Progress:
         """The newest answer or reply that stands; None if there is none."""
         given = [*self.answers.values(), *self.replies.values()]
         return max(given, key=lambda event: event.n, default=None)
-
-    @property
-    def last_answered(self) -> Trial | None:
-        """The trial that was answered last; None if no answer stands."""
-        if not self.answers:
-            return None
-        newest = max(self.answers.values(), key=lambda event: event.n)
-        return next(trial for trial in self.plan.trials if trial.key == newest.key)
 
     @property
     def done(self) -> int:

@@ -6,6 +6,7 @@ SHA-256 of itself and of the one before, so that the last one stands for the who
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import sqlite3
@@ -14,7 +15,7 @@ from contextlib import closing, contextmanager, suppress
 from datetime import UTC, datetime
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
@@ -67,36 +68,21 @@ CREATE VIEW answers AS          -- the answer of each trial that counts
         SELECT max(n) FROM event
         WHERE trial = t.number AND practice = t.practice AND kind IN ('answer', 'undo', 'missed'));
 """
-# Kinds of events, and what each says. The codebook has these words.
-KINDS = {
-    "session": "the plan was made",
-    "run": "a console began to run the session, or went on with it",
-    "cue": "a stimulus was put under the hand, or on the pins",
-    "contact": "the array came to the first dot",
-    "read": "the hand was at the end of the line and back",
-    "ended": "reading was ended by a key, a button, the answer or time",
-    "warning": "the participant was warned that time is over soon",
-    "answer": "an answer was given",
-    "confidence": "it was said how sure the last answer is",
-    "missed": "there was no answer in time",
-    "reply": "a question of the questionnaire was answered",
-    "undo": "the answer of the trial, or a reply, was taken back",
-    "repeat": "the trial is shown again",
-    "fault": "the stimulus could not be felt",
-    "well": "the stimulus could be felt again",
-    "device": "the device reported something",
-    "display": "a conventional display is ready",
-    "pins": "cells were put on the conventional display",
-    "hand": "a page of the live view took the simulated hand, or gave it back",
-    "begin": "practice was ended",
-    "pause": "the array was brought to rest",
-    "go": "a pause or a break ended",
-    "break": "a break began",
-    "note": "the experimenter noted something",
-    "closed": "the device was closed",
-    "stop": "the console stopped; the session can be resumed",
-    "end": "the session is over",
-}
+
+
+class Kind(NamedTuple):
+    """A kind of event: its byte on a serial port, its moment in playback, and its meaning."""
+
+    byte: int
+    moment: str
+    meaning: str
+
+
+with Path(__file__).with_name("events.csv").open(encoding="utf-8", newline="") as _file:
+    KINDS = {
+        kind: Kind(int(byte), moment, meaning)
+        for kind, byte, moment, meaning in list(csv.reader(_file))[1:]
+    }
 TICKS_A_BLOB = 1000
 LAST = """
     SELECT event.n, ifnull(ticks.sum, event.sum) FROM event LEFT JOIN ticks ON after = n
@@ -303,6 +289,15 @@ def reading(path: Path) -> Iterator[sqlite3.Connection]:
     with told(path), closing(connect(path, "rw" if writable else "ro")) as db:
         db.execute("PRAGMA query_only = ON")
         yield db
+
+
+def participant_of(path: Path) -> str:
+    """Return whose session a file is; empty if it cannot be read."""
+    try:
+        with reading(path) as db:
+            return str(db.execute("SELECT participant FROM session").fetchone()[0])
+    except (VbrailleError, OSError, TypeError):
+        return ""
 
 
 def connect(path: Path, mode: str) -> sqlite3.Connection:

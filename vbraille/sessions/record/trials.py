@@ -16,11 +16,10 @@ from vbraille.sessions.planning.loading import parse_protocol
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import edges_mm
 from vbraille.sessions.planning.trial import Trial
-from vbraille.sessions.record.movement import duration, pauses
+from vbraille.sessions.record.movement import describe, duration, pauses
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Content, Event, reading
 from vbraille.sessions.record.record import read as read_record
-from vbraille.sessions.record.strokes import describe
 from vbraille.sessions.record.ticks import read_ticks
 
 
@@ -31,20 +30,12 @@ class Column(NamedTuple):
     unit: str = ""
     values: str = ""
 
-    def to_bids(self) -> dict[str, Any]:
-        """Return it as BIDS has it in the JSON beside a table."""
-        told: dict[str, Any] = {"Description": self.meaning}
-        if self.unit:
-            told["Units"] = self.unit
-        if self.values:
-            told["Levels"] = {value: value for value in self.values.split(", ")}
-        return told
-
 
 with Path(__file__).with_name("columns.csv").open(encoding="utf-8", newline="") as _file:
-    _COLUMNS = list(csv.reader(_file))[1:]
-COLUMNS = {name: Column(*told) for name, *told, of in _COLUMNS if of == "all"}
-OF_PASSAGES = {name: Column(*told) for name, *told, of in _COLUMNS if of == "passages"}
+    COLUMNS_OF: dict[str, dict[str, Column]] = {}
+    for _name, *_told, _of in list(csv.reader(_file))[1:]:
+        COLUMNS_OF.setdefault(_of, {})[_name] = Column(*_told)
+COLUMNS, OF_PASSAGES = COLUMNS_OF["all"], COLUMNS_OF["passages"]
 LENGTHS = [name for name in COLUMNS if name.endswith("_mm")]
 # What may tell who a person is, or where the session was.
 PRIVATE = ("notes", "cue_time", "answer_time", "answers_from", "faults")
@@ -64,13 +55,9 @@ def rows(path: Path, *, practice: bool = False, anonymous: bool = False) -> list
     protocol = protocol_of(content)
     progress = Progress(protocol, content.plan, content.events)
     table = _Table(content, protocol, progress)
+    shown = [progress.shown(trial) for trial in content.plan.trials]
     with reading(path) as db:
-        shown = [progress.shown(trial) for trial in content.plan.trials]
-        found = [
-            table.row(db, trial)
-            for trial in shown
-            if trial is not None and (practice or not trial.practice)
-        ]
+        found = [table.row(db, each) for each in shown if each and (practice or not each.practice)]
     if anonymous:
         words = [f"asked_{item.name}" for item in protocol.questionnaire if item.kind == "text"]
         words += ["answered", "first_answer"] if protocol.asks.kind == "free" else []
@@ -121,30 +108,36 @@ class _Table:
     def __init__(self, content: Content, protocol: Protocol, progress: Progress) -> None:
         self._content, self._protocol, self._progress = content, protocol, progress
         self._runs = [event for event in content.events if event.kind == "run"]
-        fields = content.head.get("fields", {})
-        self._fields = {f"field_{name}": value for name, value in fields.items()}
+        self._hands = [event for event in content.events if event.kind == "hand"]
 
     def row(self, db: sqlite3.Connection, trial: Trial) -> dict[str, Any]:
         """Return the row of a trial as it was shown."""
-        row: dict[str, Any] = dict.fromkeys(
-            (*COLUMNS, *(OF_PASSAGES if self._protocol.design.passage else ())), ""
-        )
-        own = [e for e in self._progress.events[trial.key] if e.attempt == self._attempt(trial)]
-        row |= self._planned(trial) | self._happened(trial, own)
-        if trial.key in self._progress.answers:
-            row |= self._answered(trial, own) | self._read(db, trial, own, row["paused_s"])
-        row |= {f"item_{n}": trial.columns.get(n, "") for n in self._protocol.item_columns}
-        return row | self._replies(trial) | self._fields
-
-    def _attempt(self, trial: Trial) -> int:
-        return self._progress.attempts(trial)
+        progress, protocol = self._progress, self._protocol
+        attempt = progress.attempts(trial)
+        own = [event for event in progress.events[trial.key] if event.attempt == attempt]
+        row: dict[str, Any] = dict.fromkeys(COLUMNS, "")
+        if protocol.design.passage:
+            row |= dict.fromkeys(OF_PASSAGES, "")
+        row |= self._planned(trial) | self._happened(trial, own) | {"attempt": attempt}
+        if trial.key in progress.answers:
+            row |= self._answered(trial, own) | self._read(db, trial, own)
+        row |= {f"item_{name}": trial.columns.get(name, "") for name in protocol.item_columns}
+        for item in protocol.questionnaire:
+            number = {"trial": trial.number, "block": trial.block}.get(item.when, 0)
+            event = progress.replies.get((item.name, number))
+            reply = "" if event is None or trial.practice else event.data["reply"]
+            row[f"asked_{item.name}"] = reply
+            if item.right:
+                right = reply == item.of(trial.columns).right
+                row[f"asked_{item.name}_correct"] = int(right) if reply else ""
+        fields = self._content.head.get("fields", {})
+        return row | {f"field_{name}": value for name, value in fields.items()}
 
     def _planned(self, trial: Trial) -> dict[str, Any]:
         """Return the cells on what was planned."""
         protocol, plan, first = self._protocol, self._content.plan, trial.stimuli[0]
         style = protocol.style(first.look)
         levels = protocol.levels(trial.condition, plan.group)
-        on = "paper" if protocol.medium == "paper" else first.on
         right = protocol.asks.right_answer(trial) if first.picture else ""
         return {
             "session": self._content.path.stem,
@@ -163,7 +156,7 @@ class _Table:
             "texture_cycles": style.tuning.cycles if protocol.model != "vbd" else "",
             "model": protocol.model,
             "mapping": "" if first.picture else style.mapping.name,
-            "on": on,
+            "on": "paper" if protocol.medium == "paper" else first.on,
             "scene": first.look.scene or "",
             **{name: f"{getattr(style.geometry, name):g}" for name in LENGTHS},
             "parameter": protocol.design.parameter,
@@ -177,34 +170,29 @@ class _Table:
 
     def _happened(self, trial: Trial, own: list[Event]) -> dict[str, Any]:
         """Return the cells on what happened in the attempt that counts."""
-        events = self._progress.events[trial.key]
-        cue = _first(own, "cue")
-        contact = _first(own, "contact")
+        notes = [e.data["text"] for e in self._progress.events[trial.key] if e.kind == "note"]
+        cue, contact = _first(own, "cue"), _first(own, "contact")
         row: dict[str, Any] = {
-            "attempt": self._attempt(trial),
             "paused_s": round(_paused_s(own), 6),
             "warned": int(_first(own, "warning") is not None),
             "faults": "; ".join(event.data["what"] for event in own if event.kind == "fault"),
-            "notes": "; ".join(event.data["text"] for event in events if event.kind == "note"),
+            "notes": "; ".join(notes),
             "early": 0,
             "late": int(trial.key in self._progress.missed),
             "analysed": 0,
         }
         if cue is not None:
             row["cue_time"] = cue.wall
-        if cue is not None and contact is not None:
-            row["contact_s"] = round(contact.t_s - cue.t_s, 6)
+            row |= {} if contact is None else {"contact_s": round(contact.t_s - cue.t_s, 6)}
         return row
 
     def _answered(self, trial: Trial, own: list[Event]) -> dict[str, Any]:
         """Return the cells on the answer that counts."""
         progress, asks = self._progress, self._protocol.asks
-        answer = progress.answers[trial.key]
+        answer, confidence = progress.answers[trial.key], progress.confidences.get(trial.key)
         given, data = answer.data["answer"], answer.data
-        events = progress.events[trial.key]
-        first = next(event.data["answer"] for event in events if event.kind == "answer")
-        confidence = progress.confidences.get(trial.key)
-        correct = asks.correct(trial, given)
+        before = _first(progress.events[trial.key], "answer") or answer
+        first, correct = before.data["answer"], asks.correct(trial, given)
         run = next(run for run in reversed(self._runs) if run.n < answer.n)
         row = {
             "answered": asks.cell(trial, given),
@@ -213,107 +201,83 @@ class _Table:
             "confidence": "" if confidence is None else confidence.data["confidence"],
             "first_answer": "" if first == given else asks.cell(trial, first),
             "answers_from": run.data["answers"],
-            "moved_by": _moved_by(run, self._content.events, own, answer),
+            "moved_by": self._moved_by(run, own, answer),
             "ended_by": data.get("ended_by", ""),
             "answer_time": answer.wall,
             "early": int(data.get("early", False)),
             "late": int(data.get("late", False)),
             "analysed": int(not trial.catch or asks.counts_catch),
         }
-        cue, ended = _first(own, "cue"), _last(own, "ended")
+        cue, ended = _first(own, "cue"), _first(own[::-1], "ended")
         if cue is not None:
-            until_s = answer.t_s
+            until = answer
             if ended is not None and ended.data.get("by") != "exposure":
-                until_s = ended.t_s
-            row["response_s"] = round(until_s - cue.t_s - _paused_s(own), 6)
+                until = ended
+            row["response_s"] = round(until.t_s - cue.t_s - _paused_s(own), 6)
         return row
 
-    def _replies(self, trial: Trial) -> dict[str, Any]:
-        """Return the replies to the questionnaire that go with a trial."""
-        row: dict[str, Any] = {}
-        for item in self._protocol.questionnaire:
-            number = {"trial": trial.number, "block": trial.block}.get(item.when, 0)
-            event = self._progress.replies.get((item.name, number))
-            reply = "" if event is None or trial.practice else event.data["reply"]
-            row[f"asked_{item.name}"] = reply
-            if item.right:
-                right = item.of(trial.columns).right
-                row[f"asked_{item.name}_correct"] = int(reply == right) if reply else ""
-        return row
+    def _moved_by(self, run: Event, own: list[Event], answer: Event) -> str:
+        """Return the hand that moved a simulated array; empty if a person moved it."""
+        start = own[0].n if own else answer.n
+        before = [hand.data["held"] for hand in self._hands if hand.n <= start]
+        within = [hand.data["held"] for hand in self._hands if start < hand.n < answer.n]
+        if any((*before[-1:], *within)):
+            return "simulated:pointer"
+        hand = run.data.get("conditions", {}).get("hand", "") if run.data.get("simulated") else ""
+        return f"simulated:{hand}" if hand else ""
 
-    def _read(
-        self, db: sqlite3.Connection, trial: Trial, own: list[Event], paused_s: float
-    ) -> dict[str, Any]:
+    def _read(self, db: sqlite3.Connection, trial: Trial, own: list[Event]) -> dict[str, Any]:
         """Return the cells on how strings were read, which the ticks tell."""
+        protocol, first = self._protocol, trial.stimuli[0]
         cues = [event for event in own if event.kind == "cue" and not event.data.get("turned")]
-        if self._protocol.design.passage:
-            return self._read_passage(db, trial, own, paused_s)
-        first = trial.stimuli[0]
+        if protocol.design.passage:
+            return self._read_passage(db, trial, own)
         if len(trial.stimuli) > 1 or not cues or first.picture:
             return {}
         if "line" not in cues[-1].data:
-            end = _last(own, "read")
+            end = _first(own[::-1], "read")
             return {} if end is None else {"duration_s": round(end.t_s - cues[-1].t_s, 6)}
-        edges = edges_mm(self._protocol, first)
-        if not edges:
-            return {}
-        line = cues[-1].data["line"]
+        edges, line = edges_mm(protocol, first), cues[-1].data["line"]
         ticks = read_ticks(db, line, line, ("line", "time_ns", "x_mm"))
-        found = duration(ticks, edges[0], self._protocol.wanted.span_mm)
+        found = duration(ticks, edges[0], protocol.wanted.span_mm) if edges else None
         if found is None:
             return {}
         row: dict[str, Any] = {"returned": int(found.returned)}
         if self._progress.answers[trial.key].data.get("early"):
             return row
         row["duration_s"] = round(found.seconds, 6)
-        if paused_s:
+        if _paused_s(own):
             return row
         read = ticks[found.ticks]
-        last_mm = edges[-1] + self._protocol.style(first.look).geometry.dot_width_mm
+        last_mm = edges[-1] + protocol.style(first.look).geometry.dot_width_mm
         return row | describe(read["x_mm"], read["time_ns"], edges[0], last_mm)
 
     def _read_passage(
-        self, db: sqlite3.Connection, trial: Trial, own: list[Event], paused_s: float
+        self, db: sqlite3.Connection, trial: Trial, own: list[Event]
     ) -> dict[str, Any]:
         """Return the cells on a passage: its speed, the pauses of the hand, and its regressions."""
-        words = len(trial.item.split())
+        protocol, words = self._protocol, len(trial.item.split())
         row: dict[str, Any] = {"lines": len(trial.stimuli), "words": words}
-        cues = {event.data["stimulus"]: event.data["line"] for event in own if event.kind == "cue"}
-        contact, read = _first(own, "contact"), _last(own, "read", "ended")
-        if contact is None or read is None or len(cues) < len(trial.stimuli):
+        shown = {event.data["stimulus"]: event.data["line"] for event in own if event.kind == "cue"}
+        contact, read = _first(own, "contact"), _first(own[::-1], "read", "ended")
+        if contact is None or read is None or len(shown) < len(trial.stimuli):
             return row
-        seconds = read.t_s - contact.t_s - paused_s
+        seconds = read.t_s - contact.t_s - _paused_s(own)
         if seconds > 0:
             row["words_per_minute"] = round(60 * words / seconds, 3)
-        span_mm = self._protocol.wanted.span_mm
         lines = []
         for number, stimulus in enumerate(trial.stimuli):
-            ticks = read_ticks(db, cues[number], cues[number])
-            half_mm = self._protocol.style(stimulus.look).geometry.cell_pitch_mm / 2
-            lines.append(pauses(ticks, edges_mm(self._protocol, stimulus)[0], span_mm, half_mm))
+            ticks = read_ticks(db, shown[number], shown[number])
+            half_mm = protocol.style(stimulus.look).geometry.cell_pitch_mm / 2
+            edge_mm = edges_mm(protocol, stimulus)[0]
+            lines.append(pauses(ticks, edge_mm, protocol.wanted.span_mm, half_mm))
         number, seconds, back = map(sum, zip(*lines, strict=True))
-        return row | {
-            "hand_pauses": number, "hand_paused_s": round(seconds, 3), "regressions": back
-        }  # fmt: skip
+        told = {"hand_pauses": number, "hand_paused_s": round(seconds, 3), "regressions": back}
+        return row | told
 
 
 def _first(events: list[Event], *kinds: str) -> Event | None:
     return next((event for event in events if event.kind in kinds), None)
-
-
-def _last(events: list[Event], *kinds: str) -> Event | None:
-    return _first(events[::-1], *kinds)
-
-
-def _moved_by(run: Event, events: tuple[Event, ...], own: list[Event], answer: Event) -> str:
-    """Return the hand that moved a simulated array in a trial; empty if a person moved it."""
-    hand = run.data.get("conditions", {}).get("hand", "") if run.data.get("simulated") else ""
-    start = own[0].n if own else answer.n
-    taken = [event for event in events if event.kind == "hand" and event.n < answer.n]
-    held = any(event.data.get("held") for event in taken if event.n > start)
-    if held or (taken and taken[-1].data.get("held")):
-        return "simulated:pointer"
-    return f"simulated:{hand}" if hand else ""
 
 
 def _paused_s(events: list[Event]) -> float:

@@ -18,7 +18,7 @@ from vbraille.csvfiles import parse_csv
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_file
 from vbraille.sessions.record.bids import DATASET, PEOPLE, PSEUDONYM
-from vbraille.sessions.record.record import Record, RecordError, connect, told
+from vbraille.sessions.record.record import Record, participant_of
 
 TABLES = {".csv": ",", ".tsv": "\t"}
 TEXTS = (*TABLES, ".json", ".txt", ".md", ".html", ".svg", ".toml", ".brf")
@@ -101,68 +101,42 @@ def withdrawal(folders: Iterable[Path], participant: str) -> Withdrawal:
 
 def _look_at(path: Path, found: Withdrawal, word: re.Pattern[str]) -> None:
     """Note what a file has of the person."""
+    report = next((folder for folder in path.parents if (folder / REPORT).exists()), None)
     if path.suffix == ".session":
-        if _whose(path) == found.participant:
+        if participant_of(path) == found.participant:
             found.whole[path] = "a session"
     elif path.suffix not in TEXTS or path.stat().st_size > MOST_BYTES:
         return
     elif path.name == PEOPLE and (path.parent / DATASET).exists():
-        for label in _labels(path, found.participant):
+        for label, *_ in _rows(path, found.participant)[0]:
             found.whole[path.parent / label] = "a person of a dataset"
             found.rows[path] = 1
     elif not word.search(path.read_text("utf-8", "replace")):
         return
-    elif (report := _report_of(path)) is not None:
+    elif report is not None:
         found.whole[report] = "a report, which can be made again without the person"
-    elif path.suffix in TABLES and (count := len(_rows_of(path, found.participant))):
-        found.rows[path] = count
+    elif path.suffix in TABLES and (own := _rows(path, found.participant)[0]):
+        found.rows[path] = len(own)
     elif path.suffix == ".txt" and f"participant {found.participant}, seed" in path.read_text():
         found.whole[path] = "a plan"
     else:
         found.left.append(path)
 
 
-def _report_of(path: Path) -> Path | None:
-    return next((folder for folder in path.parents if (folder / REPORT).exists()), None)
-
-
-def _whose(path: Path) -> str:
-    """Return whose session a file is; empty if it cannot be read."""
-    try:
-        with told(path):
-            db = connect(path, "ro")
-            try:
-                return str(db.execute("SELECT participant FROM session").fetchone()[0])
-            finally:
-                db.close()
-    except (RecordError, TypeError):
-        return ""
-
-
-def _table(path: Path) -> tuple[list[list[str]], int]:
-    """Return the rows of a table, and the number of the column that tells whose a row is."""
+def _rows(path: Path, participant: str) -> tuple[list[list[str]], list[list[str]]]:
+    """Return the rows of a table that are a person's, and its header with all others."""
     try:
         sheet = parse_csv(path.read_bytes(), str(path))
     except InputError:
-        return [], -1
-    own = next((name for name in PERSON if name in sheet.columns), None)
-    return [list(sheet.columns), *sheet.rows], -1 if own is None else sheet.columns.index(own)
-
-
-def _rows_of(path: Path, participant: str) -> list[list[str]]:
-    rows, column = _table(path)
-    return [row for row in rows[1:] if column >= 0 and row[column] == participant]
-
-
-def _labels(path: Path, participant: str) -> list[str]:
-    """Return the names that a dataset has for a person's directory."""
-    return [row[0] for row in _rows_of(path, participant)]
+        return [], []
+    columns = [n for n, name in enumerate(sheet.columns) if name in PERSON][:1]
+    own = [row for row in sheet.rows if any(row[n] == participant for n in columns)]
+    return own, [list(sheet.columns), *(row for row in sheet.rows if row not in own)]
 
 
 def _without(path: Path, participant: str) -> bytes:
     """Return a table without a person's rows."""
-    rows, column = _table(path)
     text = io.StringIO()
     writer = csv.writer(text, delimiter=TABLES[path.suffix], lineterminator="\n")
-    writer.writerows(row for row in rows if row[column] != participant)
+    writer.writerows(_rows(path, participant)[1])
     return text.getvalue().encode()

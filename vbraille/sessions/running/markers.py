@@ -12,15 +12,9 @@ from typing import Any
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.trial import Trial
+from vbraille.sessions.record.record import KINDS
 
 BAUD = 115_200
-# Bytes of events on a serial port. That of a cue is the code of its condition, 40 to 254.
-BYTES = {
-    "run": 1, "cue": 3, "contact": 4, "read": 5, "warning": 6, "answer": 7, "undo": 8, "repeat": 9,
-    "fault": 10, "well": 11, "pause": 12, "go": 13, "break": 14, "begin": 15, "note": 16,
-    "device": 18, "stop": 19, "end": 20, "closed": 21, "ended": 22, "hand": 23, "pins": 26,
-    "display": 27, "missed": 28, "reply": 29, "confidence": 30,
-}  # fmt: skip
 
 
 class Markers:
@@ -69,7 +63,7 @@ class Markers:
         """
         if self._send is None:
             return
-        code, words = BYTES.get(kind, 255), [kind]
+        code, words = KINDS[kind].byte, [kind]
         if trial is not None:
             words.append(trial.name)
             if stimulus:

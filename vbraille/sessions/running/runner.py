@@ -317,17 +317,12 @@ class Runner:
         turned
             Whether it is the stimulus that is shown already, at another value.
         """
-        stimulus, presenter, procedure = (
-            trial.stimuli[self.stimulus],
-            self.presenter,
-            self.protocol.procedure,
-        )
+        stimulus, presenter = trial.stimuli[self.stimulus], self.presenter
         is_first = not self.stimulus and not turned
         shown: dict[str, Any] = {"stimulus": self.stimulus}
-        if stimulus.value is not None:
-            shown["value"] = stimulus.value
-        elif procedure is not None and procedure.parameter:
-            shown["value"] = getattr(stimulus.look, procedure.parameter)
+        if self.protocol.varied:
+            value = getattr(stimulus.look, self.protocol.varied)
+            shown["value"] = value if stimulus.value is None else stimulus.value
         shown |= presenter.prepare(stimulus)
         if turned:
             shown["turned"] = True

@@ -56,7 +56,6 @@ from vbraille.braille.cells import PLACES, mask_of
 from vbraille.sessions.simulated.skin import (
     STILL_MM_S,
     FeltFrames,
-    Rates,
     Wave,
     reference_per_mm2,
     smoothing_mm,
@@ -137,7 +136,7 @@ class Observer:
         reach_mm = self._half_mm - 0.5 * pitch_mm
         between_mm = near.x_mm - reach_mm
         wave = Wave.best(between_mm, strain, pitch_mm, self._steps)
-        rates = Rates(wave, pitch_mm / self._steps, geometry.dot_width_mm / 2)
+        points = pitch_mm / self._steps, geometry.dot_width_mm / 2
         speeds = near.speeds_mm_s()
         moving = speeds > STILL_MM_S
         for place in range(places):
@@ -147,7 +146,7 @@ class Observer:
                 over = (near.x_mm >= left_mm - reach_mm) & (near.x_mm <= right_mm + reach_mm)
                 over &= moving
                 speed_mm_s = float(np.median(speeds[over])) if over.any() else 0.0
-                rms = rates.rms(left_mm, right_mm, smoothing_mm(speed_mm_s))
+                rms = wave.rms_rates(left_mm, right_mm, smoothing_mm(speed_mm_s), *points)
                 for dot, channel in self._channels.items():
                     if PLACES[dot][0] == side:
                         evidence[place, dot - 1] = rms[channel]
@@ -163,8 +162,8 @@ class Observer:
         strong = noisy[noisy > np.nanmax(noisy) / 2]
         criterion = strong.mean() / 2 if strong.size else math.inf
         masks = (noisy > criterion) @ [mask_of([dot]) for dot in PLACES]
-        known = ~np.isnan(noisy).all(axis=1)
-        return [int(mask) if felt else None for mask, felt in zip(masks, known, strict=True)]
+        rows = zip(masks, noisy, strict=True)
+        return [None if np.isnan(row).all() else int(mask) for mask, row in rows]
 
     def read(
         self, exploration: FeltFrames, places: int, random: np.random.Generator

@@ -20,6 +20,8 @@ STILL_MM_S = 1.0
 SPEED_SPAN_S = 0.02  # time for measuring a speed; counts of 45 µm make it 2 mm/s exact
 MOST_MM_S = 1000.0
 _REACHED = 0.9  # share of a way that must have been felt
+_MOST = 1000  # points of a dot
+_LEAST = np.finfo(float).tiny
 _TAILS = 4  # reach of a kernel in standard deviations
 
 
@@ -99,9 +101,8 @@ class Wave:
     ) -> Wave:
         """Keep the strongest values that were felt at each place.
 
-        A place is a pitch / steps long. Of all ticks with the carriage at one place, the one with
-        most energy is kept, with all its sensors. Then of all sensors at one place of the line,
-        the one with most energy is kept. So each value was really felt, exactly where it says.
+        A place is a pitch / steps long. Of all that sensors felt at one place of the line, what had
+        most energy is kept. So each value was really felt, exactly where it says.
 
         Parameters
         ----------
@@ -112,89 +113,52 @@ class Wave:
         pitch_mm, steps
             Distance between two sensors, and number of places on it.
         """
-        sensors = felt.shape[1]
-        energy = np.einsum("nsc,nsc->n", felt, felt)
-        start_mm = x_mm.min()
-        place = ((x_mm - start_mm) * (steps / pitch_mm)).astype(np.intp)
-        order = np.lexsort((energy, place))
-        place = place[order]
-        last = np.append(np.flatnonzero(np.diff(place)), place.size - 1)
-        place, kept = place[last], order[last]
-        x_mm, felt = x_mm[kept], felt[kept]
-        most = np.full((sensors, place[-1] + 1 + (sensors - 1) * steps), -1.0)
-        number = np.zeros(place[-1] + 1, np.intp)
-        number[place] = np.arange(place.size)
-        energy = np.einsum("nsc,nsc->sn", felt, felt)
-        for sensor in range(sensors):
-            most[sensor, place + sensor * steps] = energy[sensor]
-        winner = most.argmax(axis=0)
-        at = np.flatnonzero(most.max(axis=0) >= 0)
-        winner = winner[at]
-        tick = number[at - winner * steps]
-        return cls(x_mm[tick] + winner * pitch_mm, felt[tick, winner].astype(np.float64))
+        u_mm = (x_mm[:, None] + pitch_mm * np.arange(felt.shape[1])).ravel()
+        values = felt.reshape(u_mm.size, -1).astype(np.float64)
+        place = ((u_mm - u_mm.min()) * (steps / pitch_mm)).astype(np.intp)
+        order = np.lexsort((np.einsum("nc,nc->n", values, values), place))
+        kept = order[np.append(np.diff(place[order]) > 0, True)]
+        kept = kept[np.argsort(u_mm[kept])]
+        return cls(u_mm[kept], values[kept])
 
+    def rms_rates(
+        self, left_mm: float, right_mm: float, sigma_mm: float, step_mm: float, gap_mm: float
+    ) -> NDArray[np.float64]:
+        """Rms rates of the smoothed wave between two places, by equation 3.
 
-class Rates:
-    """Rates at which a smoothed wave changes along a line.
+        The smoothed wave is a weighted mean. The weight of a value is the length of the line that
+        it stands for, times a Gaussian of its distance. The sum is divided by that of the weights,
+        so that uneven places do not look like waves.
 
-    The smoothed wave is a weighted mean. The weight of a value is the length of the line that it
-    stands for, times a Gaussian of its distance. The sum is divided by that of the weights, so that
-    uneven places do not look like waves.
+        Parameters
+        ----------
+        sigma_mm
+            Width of the smoothing.
+        step_mm
+            Distance between the points at which the rate is taken.
+        gap_mm
+            Longest distance between two values between which the line counts as felt.
 
-    Parameters
-    ----------
-    wave
-        The wave, which must have at least one place.
-    step_mm
-        Distance between the points at which the rate is taken.
-    gap_mm
-        Longest distance between two values between which the line counts as felt.
-    """
-
-    def __init__(self, wave: Wave, step_mm: float, gap_mm: float) -> None:
-        u_mm = wave.u_mm
-        self._u_mm, self._step_mm, self._gap_mm = u_mm, step_mm, gap_mm
-        self._start_mm = float(u_mm[0])
-        halves = np.minimum(np.diff(u_mm), gap_mm) / 2
-        way = np.append(halves, gap_mm / 2) + np.append(gap_mm / 2, halves)
-        # Each value is shared between the two nearest points, so that its place stays exact.
-        place, part = np.divmod((u_mm - self._start_mm) / step_mm, 1)
-        place = place.astype(np.intp)
-        size = int(place[-1]) + 2
-        self._weights = np.array(
-            [
-                np.bincount(place, value * (1 - part), size)
-                + np.bincount(place + 1, value * part, size)
-                for value in (way, *(way * wave.felt.T))
-            ]
+        Returns
+        -------
+        float64[channels]
+            Rates; NaN if too little of the way was felt.
+        """
+        at_mm = np.linspace(
+            left_mm, right_mm, min(round((right_mm - left_mm) / step_mm), _MOST) + 1
         )
-
-    def rms(self, left_mm: float, right_mm: float, sigma_mm: float) -> NDArray[np.float64]:
-        """Rms rate between two places by equation 3; float64[channels], NaN if not felt there."""
-        smooth, felt = self._smoothed(left_mm, right_mm, sigma_mm)
-        if np.mean(felt) < _REACHED:
-            return np.full(len(smooth), np.nan)
-        rates = np.diff(smooth, axis=1)[:, felt] / self._step_mm
-        return np.sqrt(np.mean(rates**2, axis=1))
-
-    def _smoothed(
-        self, left_mm: float, right_mm: float, sigma_mm: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """Smoothed wave at points between two places, and whether each step between was felt."""
-        first = math.ceil((left_mm - self._start_mm) / self._step_mm)
-        count = math.floor((right_mm - self._start_mm) / self._step_mm) - first + 1
-        middle_mm = self._start_mm + (first + np.arange(count - 1) + 0.5) * self._step_mm
-        felt = self._covered(middle_mm)
-        reach = math.ceil(_TAILS * sigma_mm / self._step_mm)
-        kernel = np.exp(-((np.arange(-reach, reach + 1) * self._step_mm / sigma_mm) ** 2) / 2)
-        points = np.arange(first - reach, first + count + reach)
-        known = (points >= 0) & (points < self._weights.shape[1])
-        near = np.where(known, self._weights[:, points * known], 0.0)
-        total, *sums = (np.convolve(row, kernel, "valid") for row in near)
-        return np.array(sums) / np.maximum(total, np.finfo(float).tiny), felt
-
-    def _covered(self, at_mm: NDArray[np.floating]) -> NDArray[np.bool_]:
-        after = np.searchsorted(self._u_mm, at_mm)
-        inside = (after > 0) & (after < self._u_mm.size)
-        after = np.clip(after, 1, max(self._u_mm.size - 1, 1))
-        return inside & (self._u_mm[after] - self._u_mm[after - 1] <= self._gap_mm)
+        step_mm = at_mm[1] - at_mm[0]
+        reach_mm = _TAILS * sigma_mm
+        gaps_mm = np.diff(self.u_mm)
+        halves = np.minimum(gaps_mm, gap_mm) / 2
+        stands_for = np.append(halves, gap_mm / 2) + np.append(gap_mm / 2, halves)
+        after = np.searchsorted(self.u_mm, at_mm[:-1] + step_mm / 2)
+        covered = np.concatenate(([False], gaps_mm <= gap_mm, [False]))[after]
+        if np.mean(covered) < _REACHED:
+            return np.full(self.felt.shape[1], np.nan)
+        near = slice(*np.searchsorted(self.u_mm, (left_mm - reach_mm, right_mm + reach_mm)))
+        away = (at_mm[:, None] - self.u_mm[near]) / sigma_mm
+        weights = np.exp(-(away**2) / 2) * stands_for[near]
+        smooth = weights @ self.felt[near] / np.maximum(weights.sum(axis=1, keepdims=True), _LEAST)
+        rates = np.diff(smooth, axis=0)[covered] / step_mm
+        return np.sqrt(np.mean(rates**2, axis=0))
