@@ -41,11 +41,12 @@ UNICODE_BLANK = 0x2800
 
 # North American ASCII braille: the character of each six-dot cell, in the order of U+2800-283F.
 _BRF = " A1B'K2L@CIF/MSP\"E3H9O6R^DJG>NTQ,*5<-U8V.%[$+X!&;:4\\0Z7(_?W]#Y)="
-_BRF_CODES = np.frombuffer(_BRF.encode("ascii"), np.uint8)
-_BRF_MASKS = np.full(128, 0xFF, np.uint8)
-_BRF_MASKS[_BRF_CODES] = np.arange(64, dtype=np.uint8)
 # Files in the wild use 0x60-0x7E for 0x40-0x5E, letters in lower case among them.
-_BRF_MASKS[0x60:0x7F] = _BRF_MASKS[0x40:0x5F]
+_PATTERN_OF = {
+    code + lower: UNICODE_BLANK + mask
+    for mask, code in enumerate(_BRF.encode("ascii"))
+    for lower in ((0, 0x20) if 0x40 <= code < 0x5F else (0,))
+}
 
 _PATTERNS = 0x100  # patterns in Unicode, from `UNICODE_BLANK` on
 _DOTS = ["-".join(map(str, dots_of(mask))) or "0" for mask in range(256)]
@@ -101,13 +102,6 @@ class Cells:
             end = int(self.starts[stop]) if stop < self.masks.size else self.end
         return Cells(self.masks[start:stop], self.starts[start:stop], end)
 
-    def __add__(self, other: Cells) -> Cells:
-        return Cells(
-            np.concatenate((self.masks, other.masks)),
-            np.concatenate((self.starts, other.starts)),
-            other.end,
-        )
-
     def source(self, cell: int) -> tuple[int, int]:
         """Source characters that a cell stands for, as [first, one past the last)."""
         start = int(self.starts[cell])
@@ -159,42 +153,18 @@ class Cells:
         if wrong.size:
             dots = _DOTS[self.masks[wrong[0]]]
             raise ValueError(f"BRF has six dots and cannot write the cell with dots {dots}")
-        return _BRF_CODES[self.masks].tobytes().decode("ascii")
+        return "".join(map(_BRF.__getitem__, self.masks.tolist()))
 
     @classmethod
     def from_brf(cls, text: str) -> Cells:
-        """Cells of ASCII braille, in upper or lower case.
+        """Cells of braille as files have it: ASCII braille in either case, and Unicode patterns.
 
         Raises
         ------
         ValueError
-            If a character is no ASCII braille.
+            If a character is neither; the message names it.
         """
-        codes = np.frombuffer(text.encode("utf-32-le", "surrogatepass"), "<u4")
-        masks = _BRF_MASKS[np.minimum(codes, 127)]
-        wrong = np.flatnonzero(masks == 0xFF)
-        if wrong.size:
-            raise ValueError(f"{text[wrong[0]]!r} is not an ASCII braille character")
-        return cls.bare(masks)
-
-    @classmethod
-    def from_file(cls, text: str) -> Cells:
-        """Cells of braille as files have it: Unicode patterns, ASCII braille, or both.
-
-        Raises
-        ------
-        ValueError
-            If a character is neither.
-        """
-        codes = np.frombuffer(text.encode("utf-32-le", "surrogatepass"), "<u4")
-        is_pattern = (codes >= UNICODE_BLANK) & (codes < UNICODE_BLANK + _PATTERNS)
-        masks = np.where(is_pattern, codes - UNICODE_BLANK, _BRF_MASKS[np.minimum(codes, 127)])
-        wrong = np.flatnonzero(~is_pattern & (masks == 0xFF))
-        if wrong.size:
-            raise ValueError(
-                f"{text[wrong[0]]!r} is neither ASCII braille nor a Unicode braille pattern"
-            )
-        return cls.bare(masks.astype(np.uint8))
+        return cls.from_unicode(text.translate(_PATTERN_OF))
 
     def to_dots(self) -> str:
         """Dot numbers, ``1-2-4`` a cell and ``0`` for a blank one, with a space between cells."""

@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
+import re
 from array import array
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import lru_cache, partial
+from itertools import islice
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vbraille.braille.cells import UNICODE_BLANK, Cells, mask_of
+from vbraille.errors import InputError
 from vbraille.layout.wrapping import Piece, wrap
-from vbraille.translate.blocks import BlockKind
+from vbraille.translate import BlockKind, Book, text_source
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import NDArray
 
-    from vbraille.translate.blocks import Block
-    from vbraille.translate.book import Book
+    from vbraille.braille.geometry import Geometry
+    from vbraille.display import Display
+    from vbraille.translate import Block, BrailleTable
 
 _REMEMBERED = 64  # blocks
 _LINES = 1 << 20  # more than a block has
@@ -117,14 +121,24 @@ class Line:
     def word(self, cell: int) -> str:
         """The whole word that a cell is part of, on this line or not; empty at a blank."""
         span = self.source(cell)
-        if span is None:
-            return ""
-        at = span[0] - self.block.start
+        at = -1 if span is None else span[0] - self.block.start
         text = self.block.text.replace(chr(UNICODE_BLANK), " ")
-        if at >= len(text) or text[at].isspace():
-            return ""
-        before = text[:at].split(None)[-1:] if at and not text[at - 1].isspace() else []
-        return "".join(before) + text[at:].split(None, 1)[0]
+        words = (found for found in re.finditer(r"\S+", text) if found.end() > at >= found.start())
+        return next((found[0] for found in words), "")
+
+
+# Steps before the first line of a block and before the others; for items and quotations, beside
+# those of their level.
+_INDENTS = {
+    BlockKind.PARAGRAPH: (1, 0),
+    BlockKind.NOTE: (1, 0),
+    BlockKind.HEADING: (2, 2),
+    BlockKind.ITEM: (-1, 0),
+    BlockKind.QUOTE: (1, 0),
+    BlockKind.ROW: (0, 1),
+    BlockKind.LINE: (0, 1),
+    BlockKind.PAGE: (0, 0),
+}
 
 
 def indents(block: Block, width: int) -> tuple[int, int]:
@@ -138,22 +152,11 @@ def indents(block: Block, width: int) -> tuple[int, int]:
     width
         Number of cells in a line.
     """
-    match block.kind:
-        case BlockKind.PARAGRAPH | BlockKind.NOTE:
-            first, others = STEP, 0
-        case BlockKind.QUOTE:
-            first, others = (block.level + 1) * STEP, block.level * STEP
-        case BlockKind.HEADING:
-            first, others = 2 * STEP, 2 * STEP
-        case BlockKind.ITEM:
-            first, others = (block.level - 1) * STEP, block.level * STEP
-        case BlockKind.ROW | BlockKind.LINE:
-            first, others = 0, STEP
-        case BlockKind.PAGE:
-            first, others = 0, 0
-    most = (width - 1) // (2 * STEP) * STEP
+    first, others = _INDENTS[block.kind]
+    depth = block.level if block.kind in (BlockKind.ITEM, BlockKind.QUOTE) else 0
     first = others if block.continues else first
-    return min(first, most), min(others, most)
+    most = (width - 1) // (2 * STEP) * STEP
+    return min((first + depth) * STEP, most), min((others + depth) * STEP, most)
 
 
 class Layout:
@@ -215,20 +218,16 @@ class Layout:
         """Line of a number, from 1, counted from the start; None past either end."""
         while self._before[-1] < number and self._count_on():
             pass
-        if not 1 <= number <= self._before[-1]:
-            return None
-        block = bisect_right(self._before, number - 1) - 1
-        found = self.book.source.block(block)
-        assert found is not None, "a block that was counted"
-        return self.lines_of(found)[number - 1 - self._before[block]]
+        before = bisect_right(self._before, number - 1) - 1
+        block = self.book.source.block(before) if number <= self._before[-1] else None
+        return None if block is None else self.lines_of(block)[number - 1 - self._before[before]]
 
     def lines(self, first: int = 1, last: int | None = None) -> Iterator[Line]:
         """Lines of a range of numbers, both ends included."""
-        line = self.first() if first <= 1 else self.line(first)
-        number = max(first, 1)
-        while line is not None and (last is None or number <= last):
-            yield line
-            line, number = self.beside(line), number + 1
+        begin = self.first() if first <= 1 else self.line(first)
+        if begin is not None:
+            found = islice(self._lines_from(begin.block.number, 1), begin.index, None)
+            yield from islice(found, None if last is None else max(last - max(first, 1) + 1, 0))
 
     def number(self, line: Line) -> int:
         """Number of a line, from 1, counted from the start."""
@@ -299,3 +298,65 @@ def _cells(cells: Cells, piece: Piece) -> Cells:
     masks = np.frombuffer(piece.before + own.masks.tobytes() + piece.after, np.uint8)
     pad = (len(piece.before), len(piece.after))
     return Cells(masks, np.pad(own.starts, pad, mode="edge"), own.end)
+
+
+def cells_per_line(geometry: Geometry, display: Display) -> int:
+    """Number of cells that a line has on a display.
+
+    Raises
+    ------
+    InputError
+        If there is no room for a single cell.
+    """
+    try:
+        return geometry.cells_per_line(display.span_mm)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+
+
+def lay_out_text(text: str, width: int, table: BrailleTable, *, keep_lines: bool = False) -> Layout:
+    """Lay out a string.
+
+    Parameters
+    ----------
+    text
+        Text to lay out; blank lines separate its paragraphs.
+    width
+        Number of cells in a line.
+    table
+        Table by which the text is translated.
+    keep_lines
+        Whether each line of the text stays a line, at the margin; otherwise paragraphs are filled,
+        each with an indent.
+
+    Raises
+    ------
+    InputError
+        If the text has nothing to show.
+    """
+    if not text.strip():
+        raise InputError("the text has nothing to read in it; give some")
+    return Layout(Book(text_source(text, keep_lines=keep_lines), table), width)
+
+
+def wrap_text(text: str, table: BrailleTable, width: int | None = None) -> list[bytes]:
+    """Dot masks of the lines of a paragraph, which is one line without a width.
+
+    Parameters
+    ----------
+    text
+        Text of the paragraph.
+    table
+        Table by which it is translated.
+    width
+        Number of cells in a line.
+    """
+    words = " ".join(text.split())
+    cells = table.translate(words)
+    masks = cells.masks.tobytes()
+    if width is None:
+        return [masks]
+    return [
+        masks[piece.start : piece.stop]
+        for piece in wrap(masks, cells.starts.tolist(), words, width)
+    ]

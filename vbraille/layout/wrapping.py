@@ -81,19 +81,17 @@ def wrap(
     leading = end - len(breaks.lstrip(b"\0"))
     if leading == end:
         return [Piece(0, 0, 0)]
-    spaceless = _SPACELESS.search(text) is not None
     # Deep indents of the source's own must leave room for words: half a line, and the first whole.
     word = len(breaks[leading:].split(b"\0", 1)[0])
     start = leading - min(leading, width // 2, max(0, width - indent - word))
+    ends = _ends(breaks, starts, text)
     pieces, before = [], b""
     while end - start > width - indent - len(before):
         full = start + width - indent - len(before)
-        stop, following = _at_blank(breaks, starts, text, start, full)
+        last = bisect_right(ends, (full, end)) - 1
+        stop, following = ends[last] if last >= 0 else (start, start)
         after, begin = b"", b""
-        loose = _between_letters(text, starts, start, full) if spaceless else start
-        if loose > stop:
-            stop, following = _around(breaks, start, loose)
-        elif stop == start:
+        if stop <= start:
             own = bisect_right(starts, starts[start], start) - start
             if indent and full - start < own <= width:
                 indent = width - own  # without so much of an indent, its cells stay together
@@ -119,22 +117,20 @@ def _breaks(masks: bytes, starts: Sequence[int], text: str) -> bytes:
     )
 
 
-def _at_blank(
-    breaks: bytes, starts: Sequence[int], text: str, start: int, full: int
-) -> tuple[int, int]:
-    """Cell at which a line ends before a blank, and the cell at which the next begins.
-
-    Both are the line's start if it has no blank.
-    """
-    at = breaks.rfind(0, start, full + 1)
-    while at > start:
-        stop, following = _around(breaks, start, at)
-        if stop == start:
-            break
-        if following == len(breaks) or _parts(text, starts[stop - 1], starts[following]):
-            return stop, following
-        at = breaks.rfind(0, start, stop)
-    return start, start
+def _ends(breaks: bytes, starts: Sequence[int], text: str) -> list[tuple[int, int]]:
+    """Places where a line may end: one past its last cell, and the cell where the next begins."""
+    ends = set()
+    for blank in re.finditer(rb"\0+", breaks):
+        stop, following = blank.span()
+        if following == len(breaks) or (
+            stop > 0 and _parts(text, starts[stop - 1], starts[following])
+        ):
+            ends.add((stop, following))
+    if _SPACELESS.search(text):
+        for at in range(1, len(breaks)):
+            if starts[at - 1] != starts[at] and _may_begin(text, starts[at]):
+                ends.add(_around(breaks, 0, at))
+    return sorted(ends)
 
 
 def _parts(text: str, before: int, after: int) -> bool:
@@ -144,15 +140,6 @@ def _parts(text: str, before: int, after: int) -> bool:
     """
     own = text[after] in _CLOSING and not text[before + 1 : after] and not text[before].isspace()
     return before != after and not own
-
-
-def _between_letters(text: str, starts: Sequence[int], start: int, full: int) -> int:
-    """Last cell of a line at which a script without spaces may begin another; or the start."""
-    for at in range(full, start, -1):
-        place = starts[at]
-        if starts[at - 1] != place and place and _may_begin(text, place):
-            return at
-    return start
 
 
 def _may_begin(text: str, place: int) -> bool:

@@ -136,20 +136,17 @@ class Book:
         assert own is not None
         named = own.info.language if own.info is not None else own.name.partition("-")[0]
         known = [tag for tag in (self.language, self.source.language) if tag] or [named]
-        if language.lower() in [tag.lower() for tag in known]:
-            return own
         try:
             usual = find_table(language)
             if usual in (own.name, *map(_named, known)):
                 return own
-            usual = _named(language, self.grade, usual)
-            found = BrailleTable(usual, own.undefined)
+            found = BrailleTable(_named(language, self.grade, usual), own.undefined)
             if found.eight_dots and not own.eight_dots:
                 six = six_dot_table(language)
-                return own if six is None else BrailleTable(six, own.undefined)
-            return found
+                found = own if six is None else BrailleTable(six, own.undefined)
         except InputError:
             return own
+        return found
 
     def _between_signs(self, part: Written, tag: str, following: str) -> Written:
         """A passage in another language between the signs that say so."""
@@ -181,10 +178,9 @@ class Book:
 
     def _note_script(self, block: Block, otherwise: Counter[tuple[Kind, str]]) -> None:
         """Note once that most of a block is in a script that its table does not know."""
-        letters = [sign for sign in block.text if sign.isalpha()]
-        marked = [part[0] for kind, part in otherwise.elements() if kind is Kind.MARKED]
-        marked = [sign for sign in marked if sign.isalpha()]
-        if self.table is None or len(marked) * 2 <= len(letters):
+        signs = [part[0] for kind, part in otherwise.elements() if kind is Kind.MARKED]
+        marked = list(filter(str.isalpha, signs))
+        if self.table is None or len(marked) * 2 <= sum(map(str.isalpha, block.text)):
             return
         script = unicodedata.name(marked[0], "unknown").partition(" ")[0].capitalize()
         if script not in self._scripts:

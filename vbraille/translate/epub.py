@@ -168,7 +168,7 @@ def _blocks(source: Source, package: _Package) -> Iterator[Block]:
             cells, text = None, block.text
             if source.in_cells:
                 text, strange = re.subn("[^ -~⠀-⣿]", _FULL, _SPACES.sub(" ", text))
-                cells, wrong = Cells.from_file(text), wrong + strange
+                cells, wrong = Cells.from_brf(text), wrong + strange
             texts += text != ""
             yield block.replace(anchors=anchors, entry=entry, text=text, cells=cells)
     if not texts:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection
 
 
-class _Format(NamedTuple):
+class Format(NamedTuple):
     """A format of books.
 
     Attributes
@@ -41,17 +41,17 @@ class _Format(NamedTuple):
 
 
 _FORMATS = {
-    "text": _Format("plain:read_text", takes=("encoding", "keep_lines")),
-    "markdown": _Format("markdown:read_markdown", (".md", ".markdown"), ("encoding",)),
-    "html": _Format("html:read_html", (".html", ".htm", ".xhtml"), ("encoding",)),
-    "epub": _Format("epub:read_epub"),
-    "dtbook": _Format("html:read_html"),
-    "docx": _Format("docx:read_docx"),
-    "odt": _Format("odt:read_odt"),
-    "rtf": _Format("rtf:read_rtf"),
-    "brf": _Format("braillefiles:read_brf", (".brf", ".brl"), ("encoding", "brf_table")),
-    "unicode-braille": _Format("braillefiles:read_brf", takes=("encoding",)),
-    "pef": _Format("braillefiles:read_pef", (".pef",)),
+    "text": Format("plain:read_text", takes=("encoding", "keep_lines")),
+    "markdown": Format("markdown:read_markdown", (".md", ".markdown"), ("encoding",)),
+    "html": Format("html:read_html", (".html", ".htm", ".xhtml"), ("encoding",)),
+    "epub": Format("epub:read_epub"),
+    "dtbook": Format("html:read_html"),
+    "docx": Format("docx:read_docx"),
+    "odt": Format("odt:read_odt"),
+    "rtf": Format("rtf:read_rtf"),
+    "brf": Format("braillefiles:read_brf", (".brf", ".brl"), ("encoding", "brf_table")),
+    "unicode-braille": Format("braillefiles:read_brf", takes=("encoding",)),
+    "pef": Format("braillefiles:read_pef", (".pef",)),
 }
 FORMATS = tuple(_FORMATS)
 _KEEP_LINES = ("brf", "unicode-braille", "pef")  # whatever is asked for
@@ -251,11 +251,8 @@ def _refused(stream: BinaryIO, sample: bytes) -> str:
         return ""
     stream.seek(0)
     content = stream.read()
-    if "EncryptedPackage".encode("utf-16-le") in content:
-        return "locked with a password; open it with that and save it without one"
-    if "WordDocument".encode("utf-16-le") in content:
-        return "a Word document of before 2007 (DOC); save it as DOCX or ODT"
-    return "an old Office document, not text; save it as DOCX or ODT"
+    names = _UNLIKE["ole"].items()
+    return next(said for name, said in names if name.encode("utf-16-le") in content)
 
 
 def _zipped(stream: BinaryIO, name: str) -> str:

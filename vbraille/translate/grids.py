@@ -105,35 +105,20 @@ def _cell(element: Element, read: Callable[[Element], list[Block]]) -> _Cell:
 
 def _grid(rows: list[list[_Cell]]) -> list[list[_Cell | None]]:
     """Cells of each row by columns, those above that reach into it among them."""
-    grid: list[list[_Cell | None]] = []
-    above: dict[int, tuple[_Cell, int]] = {}  # by column: a cell, and rows that it goes on for
-    for row in rows:
-        line: list[_Cell | None] = []
-        waiting = iter(row)
-        following = next(waiting, None)
-        while following or any(column >= len(line) for column in above):
-            column = len(line)
-            if column in above:
-                cell, more = above.pop(column)
-                line.append(cell)
-                if more > 1:
-                    above[column] = cell, more - 1
-            elif following is None:
-                line.append(None)
-            else:
-                columns, over = following.spans("colspan"), following.spans("rowspan") - 1
-                line += [following] * columns
-                if over:
-                    above |= dict.fromkeys(range(column, column + columns), (following, over))
-                following = next(waiting, None)
-        grid.append(line)
+    lines: list[dict[int, _Cell]] = [{} for _ in rows]
+    for number, row in enumerate(rows):
+        column = 0
+        for cell in row:
+            while column in lines[number]:
+                column += 1
+            columns = range(column, column + cell.spans("colspan"))
+            for line in lines[number : number + cell.spans("rowspan")]:
+                line.update(dict.fromkeys(columns, cell))
+            column = columns.stop
     # A row that is one cell does not make the table wider.
-    parted = [len(set(map(id, line))) > 1 for line in grid]
-    most = max([1, *(len(line) for line, is_parted in zip(grid, parted, strict=True) if is_parted)])
-    return [
-        line[:most] + [None] * (most - len(line)) if is_parted or len(line) < most else line
-        for line, is_parted in zip(grid, parted, strict=True)
-    ]
+    parted = [line for line in lines if len(set(map(id, line.values()))) > 1]
+    most = max((max(line) + 1 for line in parted), default=1)
+    return [[line.get(column) for column in range(most)] for line in lines]
 
 
 def joined(blocks: list[Block], between: str, like: Block | None = None) -> Block:

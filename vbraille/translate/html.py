@@ -150,12 +150,16 @@ class Walker:
         self._text += text
 
     def _add_apart(self, text: str, kind: MarkKind | None = None, target: str = "") -> None:
-        """Add text with blanks around it, and a mark on it."""
-        self._blank = True
+        """Add text with blanks around it, and a mark on it.
+
+        A picture of one letter may be the first of a word.
+        """
+        apart = kind is not MarkKind.IMAGE or len(text) > 1
+        self._blank = self._blank or apart
         self._add(text)
         if kind is not None:
             self._marks.append(Mark(kind, len(self._text) - len(text), len(self._text), target))
-        self._blank = True
+        self._blank = apart
 
     def _unshown(self, what: str, label: str = "") -> None:
         """Mark something that cannot be shown."""
@@ -250,8 +254,12 @@ class Walker:
         if len(self._text) > start:
             if tag and not is_block and not _same(tag, self._role.language or self._language):
                 self._marks.append(Mark(MarkKind.LANGUAGE, start, len(self._text), tag))
+            refers = [m for m in self._marks if m.kind is MarkKind.NOTE and m.start >= start]
             for kind in _emphases(element, words):
-                self._emphasise(kind, start)
+                if kind in _SMALL and not refers:
+                    self._text[start:] = _SMALL[kind]("".join(self._text[start:]))
+                if kind not in _SMALL or not refers:
+                    self._marks.append(Mark(kind, start, len(self._text)))
         if is_block:
             self._end()
         self._role, role = before, self._role
@@ -314,7 +322,16 @@ class Walker:
             case "a" | "noteref" | "annoref":
                 self._link(element, words)
                 return
-            case "img":
+            case "input" if element.get("type").lower() not in ("image", "hidden"):
+                if (
+                    element.get("type").lower() != "checkbox"
+                    or "disabled" not in element.attributes
+                ):
+                    self._unshown("form field", _label(element) or element.get("value"))
+                else:
+                    self._add("☒" if "checked" in element.attributes else "☐")
+                    self._blank = True
+            case "img" | "input" if element.get("type").lower() != "hidden":
                 self._img(element, words)
             case "svg":
                 self._svg(element)
@@ -322,8 +339,6 @@ class Walker:
             case "math":
                 self._math(element)
                 return
-            case "input":
-                self._input(element, words)
             case "table":
                 self._table(element, words)
                 return
@@ -354,13 +369,6 @@ class Walker:
         self._inside(element)
         self._blank = False
         self._say(marks[1])
-
-    def _emphasise(self, kind: MarkKind, start: int) -> None:
-        if kind in _SMALL:
-            if any(mark.kind is MarkKind.NOTE and mark.start >= start for mark in self._marks):
-                return
-            self._text[start:] = _SMALL[kind]("".join(self._text[start:]))
-        self._marks.append(Mark(kind, start, len(self._text)))
 
     def _item(self, element: Element) -> None:
         lead = element.attributes.get("data-marker")
@@ -425,31 +433,21 @@ class Walker:
             self._add_apart(self._spell(f"figure: {title}"), MarkKind.IMAGE, target)
             self._end()
         elif said:
-            self._picture(said)
+            self._add_apart(said, MarkKind.IMAGE)
         elif not decoration and not words & {"presentation", "none"}:
             self._unshown("picture")
 
-    def _picture(self, said: str) -> None:
-        """Words for a picture, apart from the text beside; a letter may be the first of a word."""
-        words = " ".join(said.split())
-        if len(words) > 1:
-            self._add_apart(words, MarkKind.IMAGE)
-        else:
-            self._add(words)
-            self._marks.append(Mark(MarkKind.IMAGE, len(self._text) - 1, len(self._text)))
-
     def _svg(self, element: Element) -> None:
-        title = _label(element) or next((each.text for each in element.iter("title")), "")
-        texts = [" ".join(each.text.split()) for each in element.iter("text")]
+        title = _label(element) or element.said("title")
+        texts = [text for each in element.iter("text") if (text := " ".join(each.text.split()))]
         pictures = [_label(picture) for picture in element.iter("image")]
-        if title.strip():
-            self._picture(title)
-        elif any(texts):
-            for text in filter(None, texts):
-                self._add_apart(text)
-        elif pictures:
+        if title:
+            self._add_apart(title, MarkKind.IMAGE)
+        for text in texts if not title else ():
+            self._add_apart(text)
+        if pictures and not title and not texts:
             self._unshown("picture", pictures[0])
-        else:
+        elif not title and not texts:
             self._unshown("drawing")
 
     def _math(self, element: Element) -> None:
@@ -459,16 +457,6 @@ class Walker:
         elif text[0].isalnum() or text[0] == "\\":
             self._blank = self._blank or "".join(self._text[-1:]).isalnum()
         self._add(text)
-
-    def _input(self, element: Element, words: set[str]) -> None:
-        kind = element.get("type").lower()
-        if kind == "image":
-            self._img(element, words)
-        elif kind == "checkbox" and "disabled" in element.attributes:
-            self._add("☒" if "checked" in element.attributes else "☐")
-            self._blank = True
-        elif kind != "hidden":
-            self._unshown("form field", _label(element) or element.get("value"))
 
     def _table(self, element: Element, words: set[str]) -> None:
         group = next(self._groups)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from vbraille.translate.encodings import read_text_of
@@ -11,12 +10,9 @@ from vbraille.translate.html import tree_blocks
 from vbraille.translate.trees import read_tree
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
-    from markdown_it.renderer import RendererHTML
     from markdown_it.rules_block import StateBlock
-    from markdown_it.token import Token
-    from markdown_it.utils import EnvType, OptionsDict
 
     from vbraille.translate.blocks import Block
     from vbraille.translate.source import Source
@@ -25,7 +21,7 @@ if TYPE_CHECKING:
 # than its own limit, which is not reached.
 _DEEPEST, _LIMIT = 100, 110
 # What some writers of Markdown set behind a heading, for links to it.
-_NAME = re.compile(r"\s*\{\s*#([^\s{}]+)[^{}]*\}\s*$")
+_NAME = re.compile(r"(.*?)\s*\{\s*#([^\s{}]+)[^{}]*\}\s*$", re.S)
 _FRONT = re.compile(r"^(title|lang|language)\s*:[ \t]*(.*(?:\n[ \t]+.*)*)", re.M | re.I)
 
 
@@ -50,7 +46,6 @@ def read_markdown(source: Source, encoding: str | None = None) -> Iterator[Block
     text = read_text_of(source, encoding)
     parser = MarkdownIt("commonmark", {"maxNesting": _LIMIT}).enable(["table", "strikethrough"])
     parser.block.ruler.before("table", "deepest", _deepest)
-    parser.add_render_rule("image", _image)
     for plugin in (front_matter_plugin, footnote_plugin, deflist_plugin):
         parser.use(plugin)
     # As pandoc has it: "$5 and $6" is no formula, nor is "$20,000 or US$15".
@@ -58,13 +53,25 @@ def read_markdown(source: Source, encoding: str | None = None) -> Iterator[Block
     parser.use(sub_plugin).use(superscript_plugin)
     parser.use(attrs_plugin, spans=True).use(anchors_plugin, max_level=6)
     tokens = parser.parse(text)
-    _name_headings(tokens)
     for token in tokens:
         if token.type == "front_matter":
             _read_front(source, token.content)
+        for image in token.children or ():
+            if image.type == "image" and not image.content.strip():
+                # A picture without words; an `alt` would say that it is a decoration.
+                image.attrs.pop("alt")
+                image.type = "html_inline"
+                image.content = f"<img{parser.renderer.renderAttrs(image)}>"
     html = parser.renderer.render(tokens, parser.options, {})
     content = html.encode("utf-8", "replace")
-    return tree_blocks(source, read_tree(content, source.name, source.note, xml=False))
+    root = read_tree(content, source.name, source.note, xml=False)
+    for heading in root.iter("h1", "h2", "h3", "h4", "h5", "h6"):
+        last = heading.children[-1] if heading.children else ""
+        found = _NAME.match(last) if isinstance(last, str) else None
+        if found is not None:
+            heading.children[-1] = found[1]
+            heading.attributes["id"] = found[2]
+    return tree_blocks(source, root)
 
 
 def _read_front(source: Source, front: str) -> None:
@@ -90,25 +97,3 @@ def _deepest(state: StateBlock, first: int, after: int, silent: bool) -> bool:
     state.push("paragraph_close", "p", -1)
     state.line = after
     return True
-
-
-def _image(
-    renderer: RendererHTML, tokens: Sequence[Token], index: int, options: OptionsDict, env: EnvType
-) -> str:
-    """HTML of a picture; without words it has no `alt`, which if empty says it is a decoration."""
-    token = tokens[index]
-    words = renderer.renderInlineAsText(token.children, options, env)
-    token.attrs.pop("alt", None)
-    if words.strip():
-        token.attrSet("alt", words)
-    return renderer.renderToken(tokens, index, options, env)
-
-
-def _name_headings(tokens: list[Token]) -> None:
-    """Take the name behind each heading, as in "Two {#two}", for the name of its anchor."""
-    for opening, inline in pairwise(tokens):
-        last = inline.children[-1] if opening.type == "heading_open" and inline.children else None
-        found = _NAME.search(last.content) if last is not None and last.type == "text" else None
-        if last is not None and found is not None:
-            last.content = last.content[: found.start()]
-            opening.attrSet("id", found[1])

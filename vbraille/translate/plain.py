@@ -45,19 +45,11 @@ def text_blocks(source: Source, text: str, *, keep_lines: bool = False) -> Itera
         for line in text.rstrip("\n \t").split("\n"):
             yield Block(tidy(line.replace("\f", "").expandtabs()).rstrip(), BlockKind.LINE)
         return
-    for paragraph in _paragraphs(text):
+    for paragraph in _PARAGRAPH.split(text):
         for item in _items(_CUT.sub(r"\1", paragraph.replace("\u00ad\n", ""))):
             words = _BLANKS.sub(" ", tidy(item)).strip(" \n")
             if words:
                 yield Block(words)
-
-
-def _paragraphs(text: str) -> Iterator[str]:
-    start = 0
-    for found in _PARAGRAPH.finditer(text):
-        yield text[start : found.start()]
-        start = found.end()
-    yield text[start:]
 
 
 def _items(paragraph: str) -> Iterator[str]:

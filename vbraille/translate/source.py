@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from bisect import bisect_right
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, BinaryIO
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
     Reader = Callable[["Source"], Iterator[Block]]
 
 PIECE = 8_192  # characters of a block; a longer one comes in pieces
+# As many characters as may be, up to the end of a sentence in their second half, or of a word.
+_PIECE = re.compile(
+    rf"(?s).{{{PIECE // 2},{PIECE}}}(?<=[.!?…] )|.{{1,{PIECE}}}(?<= )|.{{1,{PIECE}}}"
+)
 _LOUDEST = 100_000  # blocks that are gathered in one go
 
 
@@ -206,15 +211,12 @@ class Source:
 
 def _pieces(block: Block) -> Iterator[Block]:
     """A block, or its pieces, cut after a sentence or at least a word."""
-    text, start = block.text, 0
-    while len(text) - start > PIECE:
-        window = text[start : start + PIECE]
-        cut = max(window.rfind(mark) + len(mark) for mark in (". ", "! ", "? ", "… "))
-        if cut <= PIECE // 2:
-            cut = window.rfind(" ") + 1 or PIECE
-        yield _piece(block, start, start + cut)
-        start += cut
-    yield block if not start else _piece(block, start, len(text))
+    start = 0
+    for found in _PIECE.finditer(block.text) if len(block.text) > PIECE else ():
+        if len(block.text) - start > PIECE:
+            yield _piece(block, start, found.end())
+            start = found.end()
+    yield block if not start else _piece(block, start, len(block.text))
 
 
 def _piece(block: Block, start: int, stop: int) -> Block:

@@ -191,37 +191,29 @@ def _compositions(part: str) -> Iterator[str]:
 
 def _small_forms(part: str, cells_of: Callable[[str], bytes]) -> Iterator[tuple[Kind, str]]:
     """Spellings of small numbers: by the table's own sign for such, or as in 10^6 and H_2O."""
-    for forms, sign in ((_RAISED, "^"), (_LOWERED, "_")):
+    for forms, two, sign in ((_RAISED, "²", "^"), (_LOWERED, "₂", "_")):
         if part[0] not in forms:
             continue
         text = "".join(forms[small] for small in part)
-        indicator, low = _indicator(forms, cells_of)
         alone = text.isdigit() or len(text) == 1
+        indicator, low = _indicator(two, cells_of)
+        if sign == "_" and not indicator and _indicator("²", cells_of)[0] == _UEB_RAISED:
+            indicator = _UEB_LOWERED
         if indicator and low and text.isdigit():
-            digits = (chr(0x2800 | low_dots(cells_of(digit)[-1])) for digit in text)
-            yield Kind.EQUIVALENT, indicator + "".join(digits)
+            text_below = (chr(0x2800 | low_dots(cells_of(digit)[-1])) for digit in text)
+            yield Kind.EQUIVALENT, indicator + "".join(text_below)
         elif indicator:
             yield Kind.EQUIVALENT, indicator + (text if alone else f"⠣{text}⠜")
         for plain in (sign + (text if alone else f"({text})"), f"({text})", f" {text} "):
             yield Kind.PLAIN, plain
 
 
-def _indicator(forms: dict[str, str], cells_of: Callable[[str], bytes]) -> tuple[str, bool]:
-    """Dots before a small number that a table's own ² and ³ tell, and if digits are lowered."""
-    found = set()
-    for small, digit in forms.items():
-        own, on_line = cells_of(small) if digit in "23" else b"", cells_of(digit)
-        for cells, low in (
-            (on_line, False),
-            (bytes([low_dots(on_line[-1])]) if on_line else b"", True),
-        ):
-            if own and cells and len(own) > len(cells) and own.endswith(cells):
-                found.add(("".join(chr(0x2800 | mask) for mask in own[: -len(cells)]), low))
-                break
-    if len(found) == 1:
-        return found.pop()
-    if forms is _LOWERED and _indicator(_RAISED, cells_of)[0] == _UEB_RAISED:
-        return _UEB_LOWERED, False
+def _indicator(two: str, cells_of: Callable[[str], bytes]) -> tuple[str, bool]:
+    """Dots before a small number that a table's own ² tells, and whether its digits are lowered."""
+    own, on_line = cells_of(two), cells_of("2")
+    for cells, low in ((on_line, False), (bytes(map(low_dots, on_line[-1:])), True)):
+        if cells and own != cells and own.endswith(cells):
+            return "".join(chr(0x2800 | mask) for mask in own[: -len(cells)]), low
     return "", False
 
 
