@@ -49,7 +49,7 @@ from vbraille.scene.textures import (
     Uniform,
     UniformVibration,
 )
-from vbraille.scene.traversal import drawn_vibrations, driving, each
+from vbraille.scene.traversal import drawn_vibrations, driving, each, waves_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -162,7 +162,7 @@ def _frequencies(pattern: AnyPattern) -> Iterator[float]:
     for vibration in (pattern.vibration, *drawn_vibrations(pattern)):
         if vibration is not None and vibration.amplitude > 0.0:
             yield vibration.frequency_hz
-    yield from (flow.flow_hz for flow in pattern.flows)
+    yield from (wave.flow_hz for _, wave in waves_of(pattern) if wave.speed)
     if isinstance(pattern, Moving) and any(pattern.velocity_mm_s):
         yield 1.0  # it moves at any length of its waves
 

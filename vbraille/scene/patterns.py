@@ -18,7 +18,6 @@ from vbraille.scene.measures import (
     Length,
     Measured,
     Point,
-    RidgeWave,
     Share,
     Size,
     Velocity,
@@ -179,17 +178,6 @@ class Shape(Pattern, frozen=True, kw_only=True):
     def outline(self) -> tuple[tuple[tuple[Point, ...], ...], bool]:
         """Places of each contour of its path, and whether they close; a circle has none."""
         return (), True
-
-    @property
-    def wave(self) -> RidgeWave | None:
-        """Length and speed of ridges and gaps along its stroke; None if it has none."""
-        return self.stroke.along.wave if self.stroke and self.stroke.along else None
-
-    @property
-    def flows(self) -> tuple[RidgeWave, ...]:
-        """All that flows along its path by itself, as waves."""
-        found = [self.wave, self.cue and self.cue.wave, self.dots and self.dots.wave]
-        return tuple(wave for wave in found if wave and wave.speed)
 
     @property
     def width_mm(self) -> float:
