@@ -306,7 +306,7 @@ def test_a_signal_is_drawn_against_the_velocity_and_told(suffix, call, tmp_path)
         assert b"right 1.00" in content
         assert ElementTree.fromstring(content) is not None
     if suffix == "csv":
-        assert content.startswith(b"speed_mm_s,direction_deg,value\n0,0,1\n")
+        assert content.startswith(b"x_mm_s,y_mm_s,value\n-6.25,-6.25,")
     assert "million" in call("map", path, "--signal", "onward", "--out", tmp_path / "b.png",
                              "--resolution", "500").err  # fmt: skip
 
@@ -336,6 +336,21 @@ def test_rulers_that_nobody_could_read_are_refused(scene, call, tmp_path):
         call("map", scene, "--rulers", "--resolution", "0.11", "--out", tmp_path / "x.svg").code
         == 0
     )
+
+
+def test_a_key_is_a_second_file(call, tmp_path):
+    path = tmp_path / "cell.scene"
+    path.write_text("""
+        canvas = { width_mm = 120, height_mm = 90 }
+        [[elements]]
+        kind = "label"
+        text = "mitochondrion"
+        place_mm = [80, 40]
+    """)
+    done = call("map", path, "--key", "--out", tmp_path / "cell.png")
+    assert done.code == 0
+    assert (tmp_path / "cell-key.png").is_file()
+    assert "label, text 1 mitochondrion" in done.out
 
 
 # The kernel's own word: `ru_maxrss` would begin with what the tests' process has.

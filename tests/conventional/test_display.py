@@ -3,6 +3,7 @@
 import signal
 import socket
 import time
+from contextlib import closing
 from itertools import count
 
 import pytest
@@ -33,7 +34,7 @@ def brltty(tmp_path):
 
 @pytest.fixture
 def display(brltty):
-    with ConventionalDisplay(f"brlapi:{brltty.host}") as display:
+    with closing(ConventionalDisplay(f"brlapi:{brltty.host}")) as display:
         yield display
 
 
@@ -115,7 +116,10 @@ def test_why_there_is_none_is_said(tmp_path, how, why):
     key = tmp_path / "key"
     key.write_text("secret\n")
     how = {name: value + str(key) * value.endswith(":") for name, value in how.items()}
-    with Brltty(tmp_path, **how) as brltty, ConventionalDisplay(f"brlapi:{brltty.host}") as display:
+    with (
+        Brltty(tmp_path, **how) as brltty,
+        closing(ConventionalDisplay(f"brlapi:{brltty.host}")) as display,
+    ):
         until(lambda: why in getattr(heard(display, DisplayAway), "why", ""))
 
 
@@ -126,7 +130,7 @@ def test_another_service_at_the_port_is_no_brltty():
         number = port - 4101
         if number < 0:
             pytest.skip("the port is below those of BRLTTY")
-        with ConventionalDisplay(f"brlapi:127.0.0.1:{number}") as display:
+        with closing(ConventionalDisplay(f"brlapi:127.0.0.1:{number}")) as display:
             taken, _ = server.accept()
             taken.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n" * 20)
             taken.close()

@@ -36,7 +36,7 @@ GALLERY = [
         for path in sorted(SCENES.glob("*.scene"))
     ),
     Shown("pictured", "-sequence", ("--frames", "4", *COARSE), "gif"),
-    Shown("pictured", "-array", ("--array", "14,27", "--resolution", "4", "--rulers")),
+    Shown("pictured", "-array", ("--array", "14,27", "--resolution", "2.6", "--rulers")),
     Shown("pictured", "-outline", ("--outline", "--resolution", "5")),
     Shown("joints", "-outline", ("--outline", *FINE)),
     Shown("markers", "-outline", ("--outline", *FINE)),

@@ -18,9 +18,9 @@ def with_style(model, **changes):
     return replace(model, style=replace(model.style, **changes))
 
 
-def make_page(lines, model=STRESS2, x_mm=0.0, line_index=0):
+def make_page(lines, model=STRESS2, x_mm=0.0):
     model = with_style(model, tuning=Tuning())
-    return page(lines, model, x_mm=x_mm, line_index=line_index)
+    return page(lines, model, x_mm=x_mm)
 
 
 TABLES = [

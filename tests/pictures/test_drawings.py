@@ -10,18 +10,13 @@ from PIL import Image
 from scipy.ndimage import label
 
 from vbraille.errors import InputError
-from vbraille.pictures import drawings
 from vbraille.pictures.drawings import (
     ArrayOnMap,
-    ArrayPlace,
-    actuators_mm,
-    bars_mm,
     check_on_canvas,
     drawing_bytes,
     felt_contours,
     map_figure,
     outline_figure,
-    show_array,
 )
 from vbraille.pictures.scenes import map_deflections
 from vbraille.render import LATERO, STRESS2_8X8, VBD
@@ -29,52 +24,40 @@ from vbraille.render.labels import Assets
 from vbraille.scene.patterns import Circle, Fill, Polygon, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke, Vibration
-from vbraille.scene.textures import LinearGrating, UniformVibration
+from vbraille.scene.textures import LinearGrating
 
 CANVAS = Canvas(width_mm=60, height_mm=50)
 
 
+def array(display, x_mm, y_mm, angle_deg=0.0, deflection=0.0):
+    return ArrayOnMap(display, x_mm, y_mm, angle_deg, np.full(display.shape, deflection))
+
+
 def test_actuators_stand_where_the_convention_of_poses_says():
-    places = actuators_mm(STRESS2_8X8.display, ArrayPlace(30, 20, 90))
+    turned = array(STRESS2_8X8.display, 30, 20, 90)
+    places = turned.placed(turned.actuators_mm()).reshape(8, 8, 2)
     # A quarter turn against the clock: what was at the right is far from the reader now.
-    right, left = places[0, 7], places[0, 0]
-    assert right == pytest.approx((30 - 4.9, 20 - 4.2))
-    assert left == pytest.approx((30 - 4.9, 20 + 4.2))
-    upright = actuators_mm(STRESS2_8X8.display, ArrayPlace(30, 20))
-    assert upright[0, 7] == pytest.approx((30 + 4.2, 20 - 4.9))
-
-
-def test_deflections_are_those_of_the_places_and_parities():
-    scene = Scene(canvas=CANVAS, elements=(LinearGrating(ridge_mm=4),))
-    place = ArrayPlace(30, 25, 20)
-    frame = show_array(scene, Assets(), STRESS2_8X8.display, place, 0.0).deflections
-    x_mm = actuators_mm(STRESS2_8X8.display, place)[..., 0]
-    assert frame == pytest.approx(0.5 - 0.5 * np.cos(2 * np.pi * x_mm / 4), abs=1e-5)
-    shaking = Scene(canvas=CANVAS, elements=(UniformVibration(),))
-    frame = show_array(shaking, Assets(), STRESS2_8X8.display, place, 0.005).deflections
-    row, column = np.indices((8, 8))
-    assert frame == pytest.approx(((row + column) % 2 == 0).astype(float), abs=1e-6)
+    assert places[0, 7] == pytest.approx((30 - 4.9, 20 - 4.2))
+    assert places[0, 0] == pytest.approx((30 - 4.9, 20 + 4.2))
 
 
 @pytest.mark.parametrize(("model", "side"), [(LATERO, 1), (VBD, -1)])
 def test_a_bar_stands_at_the_side_of_rest_and_goes_to_the_other(model, side):
     display = model.display
     for deflection in (0.0, 1.0):
-        frame = np.full(display.shape, deflection)
-        bars = bars_mm(ArrayOnMap(display, ArrayPlace(30, 25), frame))
-        middles = bars.mean(axis=1).reshape(*display.shape, 2)
-        shifts = middles[..., 0] - actuators_mm(display, ArrayPlace(30, 25))[..., 0]
+        shown = array(display, 30, 25, deflection=deflection)
+        bars = shown.bars_mm()
+        shifts = (bars.mean(axis=1) - shown.placed(shown.actuators_mm()))[:, 0]
         expected = side * 0.3 * display.column_pitch_mm * (1 if deflection == 0 else -1)
-        assert shifts == pytest.approx(np.full(display.shape, expected))
-        apart = display.column_pitch_mm - (bars[0][:, 0].max() - bars[0][:, 0].min())
-        assert apart > 0
+        assert shifts == pytest.approx(np.full(shifts.size, expected))
+        assert display.column_pitch_mm > np.ptp(bars[0][:, 0])
 
 
 def test_an_array_beyond_the_canvas_is_refused():
-    check_on_canvas(CANVAS, LATERO.display, ArrayPlace(30, 25, 45))
-    for place in (ArrayPlace(4, 25), ArrayPlace(30, 46), ArrayPlace(math.nan, 25)):
+    check_on_canvas(CANVAS, array(LATERO.display, 30, 25, 45))
+    for place in ((4, 25), (30, 46), (math.nan, 25)):
         with pytest.raises(InputError, match="the array is not on the canvas"):
-            check_on_canvas(CANVAS, LATERO.display, place)
+            check_on_canvas(CANVAS, array(LATERO.display, *place))
 
 
 def ink(figure, per_mm):
@@ -88,7 +71,7 @@ def test_axes_stand_around_a_map_of_the_same_size():
     plain = ink(map_figure(CANVAS, np.ones((50, 60))), per_mm)
     assert plain.shape == (50 * per_mm, 60 * per_mm)
     assert plain.all()
-    around = ink(map_figure(CANVAS, np.ones((50, 60)), axes=True), per_mm)
+    around = ink(map_figure(CANVAS, np.ones((50, 60)), rulers=(0, 60, 50, 0)), per_mm)
     assert around.shape[0] > plain.shape[0]
     assert around.shape[1] > plain.shape[1]
     assert around.mean(axis=1).max() * around.shape[1] == pytest.approx(plain.shape[1], abs=12)
@@ -132,15 +115,10 @@ def test_walls_that_meet_are_joined():
     assert label(~black)[1] == 4  # outside and three rooms, none open to another
 
 
-def test_lines_around_what_is_felt_are_closed_across_all_bands_of_rows(monkeypatch):
-    scene = Scene(canvas=CANVAS, elements=DRAWN)
-    whole = felt_contours(scene, Assets())
-    monkeypatch.setattr(drawings, "_BAND_ROWS", 7)
-    banded = felt_contours(scene, Assets())
-    assert all((line[0] == line[-1]).all() for line in banded)
-    corners = [sorted(map(bytes, np.concatenate(lines))) for lines in (whole, banded)]
-    assert set(corners[0]) == set(corners[1])
-    assert len(whole) == len(banded)
+def test_lines_around_what_is_felt_are_closed():
+    lines = felt_contours(Scene(canvas=CANVAS, elements=DRAWN), Assets())
+    assert lines
+    assert all((line[0] == line[-1]).all() for line in lines)
 
 
 def test_a_scene_of_which_nothing_is_felt_is_blank():

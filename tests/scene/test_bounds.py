@@ -21,7 +21,7 @@ from vbraille.scene.patterns import (
     Tile,
     Use,
 )
-from vbraille.scene.strokes import DotStyle, Dotting, Stroke, Vibration
+from vbraille.scene.strokes import DotStyle, Dotting, Stroke
 from vbraille.scene.textures import Uniform
 
 STROKE = Stroke(width_mm=4)
@@ -50,15 +50,6 @@ CIRCLE = Circle(center_mm=(40, 20), radius_mm=5, fill=Fill(texture=Uniform()))
 )
 def test_a_pattern_is_bounded_by_what_it_is(pattern, want):
     assert bounds(pattern) == want
-
-
-def test_what_is_up_where_there_is_nothing_is_everywhere():
-    line = StraightLine(start_mm=(0, 0), end_mm=(9, 9), stroke=STROKE, inverted=True)
-    assert bounds(line) is None
-    low = StraightLine(start_mm=(0, 0), end_mm=(9, 9), stroke=STROKE, vibration=Vibration(of="low"))
-    assert bounds(low) is None
-    high = StraightLine(start_mm=(0, 0), end_mm=(9, 9), stroke=STROKE, vibration=Vibration())
-    assert bounds(high) is not None
 
 
 @pytest.mark.parametrize("pattern", [Use(name="x"), ImageDots(file="x.png")])
@@ -123,12 +114,6 @@ def test_an_image_that_is_up_outside_is_everywhere():
 def test_a_bitmap_of_no_size_is_refused_where_it_is_made(size):
     with pytest.raises(ValueError, match=r"of a bitmap is .* mm; it must be 0\.01 to 100000 mm"):
         Bitmap(np.zeros((2, 2), np.uint16), (0, 0), *size)
-
-
-def test_an_image_of_nothing_has_the_box_of_a_point():
-    box = bitmap_box(Bitmap(np.zeros((2, 2), np.uint16), (5, 5), 2, 2))
-    assert box is not None
-    assert (box.right, box.bottom) == (box.left, box.top)
 
 
 def test_an_images_box_is_no_larger_than_its_mask():

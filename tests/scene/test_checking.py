@@ -12,7 +12,6 @@ from vbraille.scene.patterns import (
     Circle,
     Fill,
     Group,
-    Label,
     Moving,
     Polygon,
     Tile,
@@ -98,11 +97,6 @@ VIBRATING = {
 def test_whatever_vibrates_is_found(name):
     (element,) = report(VIBRATING[name]).elements
     assert element.vibration_hz == (25.0,)
-
-
-def test_what_does_not_swing_does_not_vibrate():
-    still = circle(stroke=Stroke(vibration=Vibration(amplitude=0.0)))
-    assert report(still).elements[0].vibration_hz == ()
 
 
 MEETING = {
@@ -248,12 +242,6 @@ def test_an_empty_scene_says_that_nothing_can_be_felt():
     assert advice() == (
         "the scene has no elements, so nothing can be felt; write some under [[elements]]",
     )
-
-
-def test_a_label_whose_size_is_not_known_is_somewhere():
-    (element,) = report(Label(text="sea", place_mm=(5, 5))).elements
-    assert element.box is None
-    assert not advice(circle(), Label(text="sea", place_mm=(5, 5)))
 
 
 def test_examples():

@@ -178,7 +178,6 @@ ZEROS = zlib.compress(bytes(3 << 20))
 BAD = {
     "declared size": (lambda _: png(100_000, 100_000), "pixels"),
     "larger than a camera's": (lambda _: png(10_000, 10_000), "10000 × 10000 pixels"),
-    "no pixels": (lambda _: png(0, 5), "is no PNG"),
     "text of 3 MB in a few kB": (
         lambda _: png(1, 1, chunk(b"zTXt", b"a\0\0" + ZEROS), chunk(b"IDAT", ZEROS)),
         "damaged",
@@ -189,9 +188,7 @@ BAD = {
     ),
     "no image": (lambda _: b"Once upon a time", "is no PNG"),
     "truncated JPEG": (lambda path: as_jpeg(path)[:-300], "damaged"),
-    "truncated PNG": (lambda path: as_jpeg(path, "PNG")[:-300], "damaged"),
     "another kind": (lambda path: as_jpeg(path, "TIFF"), "is no PNG"),
-    "another kind (WebP)": (lambda path: as_jpeg(path, "WEBP"), "is no PNG"),
     "PostScript": (lambda path: as_jpeg(path, "EPS"), "is no PNG"),
     "empty": (lambda _: b"", "is empty"),
     "scans": (lambda path: as_jpeg(path)[:-2] + b"\xff\xda\0\x08\1\1\0\0\x3f\0" * 200, "scans"),

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from vbraille.scene.joints import joint, joints, marker_half_angle_rad, places_along_mm
+from vbraille.scene.joints import joint, marker_half_angle_rad, places_along_mm
 from vbraille.scene.patterns import Polygon
 from vbraille.scene.strokes import Stroke, VertexMarkers
 
@@ -74,14 +74,6 @@ def test_places_along_a_polygon_are_those_of_its_corners():
     rounded = Polygon(vertices_mm=SQUARE, stroke=Stroke(width_mm=4))
     edge = 26 + math.pi
     assert places_along_mm(rounded) == pytest.approx([n * edge for n in range(5)])
-
-
-def test_a_polygon_has_as_many_joints_as_vertices():
-    found = joints(SQUARE, 2)
-    assert [one.vertex_mm for one in found] == list(SQUARE)
-    assert [one.pivot_mm for one in found] == [
-        pytest.approx(place) for place in ((2, 2), (28, 2), (28, 28), (2, 28))
-    ]
 
 
 @pytest.mark.parametrize(

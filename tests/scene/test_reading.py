@@ -13,8 +13,10 @@ from hypothesis import strategies as st
 
 from vbraille.errors import InputError
 from vbraille.scene.converting import write_scene
+from vbraille.scene.patterns import Circle
 from vbraille.scene.reading import MOST_BYTES, open_scene
 from vbraille.scene.signals import Speed
+from vbraille.scene.strokes import Stroke
 
 CANVAS = "[canvas]\nwidth_mm = 200\nheight_mm = 100\n"
 CIRCLE = '[[elements]]\nkind = "circle"\ncenter_mm = [10, 20]\nradius_mm = 5\n'
@@ -75,7 +77,7 @@ REFUSED = {
     ),
     "spokes that fade over no length": (
         element("axial-grating", "center_mm = [1, 1]", "ridge_deg = 9", "fade_mm = [0, 5e-324]"),
-        "line 8: fade is from a length to the same; set the second larger",
+        "line 8: fade is from a smaller to a larger length, from 0 to 100 mm",
     ),
     "dots that fill the memory": (
         element(
@@ -192,6 +194,12 @@ def test_what_cannot_be_used_is_refused_in_one_sentence(tmp_path, case):
     said = refusal(write(tmp_path, text)).replace(f"{tmp_path}/", "")
     assert sentence in said
     assert "\n" not in said
+
+
+def test_values_that_programs_make_are_checked_too():
+    for center_mm, said in (((1, 2, 3), "center has 3 numbers"), ((1, 2e4), "center, y is 20000")):
+        with pytest.raises(ValueError, match=said):
+            Circle(center_mm=center_mm, radius_mm=5, stroke=Stroke())
 
 
 def test_a_folder_and_a_file_that_is_not_there_are_refused(tmp_path):

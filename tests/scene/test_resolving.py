@@ -24,7 +24,7 @@ from vbraille.scene.patterns import (
 from vbraille.scene.resolving import MOST_DEPTH, resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke, Vibration
-from vbraille.scene.textures import LinearGrating, Uniform
+from vbraille.scene.textures import Uniform
 from vbraille.scene.traversal import ONE, SEVERAL, moved, with_children
 
 CANVAS = Canvas(width_mm=200, height_mm=100)
@@ -118,13 +118,6 @@ def test_a_pattern_is_moved_with_all_its_places(pattern, places):
     assert moved(pattern, (3.0, -4.0)) == msgspec.structs.replace(pattern, **places)
 
 
-def test_what_stands_in_a_pattern_moves_with_it():
-    fill = Circle(center_mm=(0.0, 0.0), radius_mm=5.0, fill=Fill(texture=LinearGrating(ridge_mm=2)))
-    group = moved(Group(parts=(fill,), operation="maximum"), (3.0, 0.0))
-    assert group.parts[0].center_mm == (3.0, 0.0)
-    assert group.parts[0].fill.texture.start_mm == (3.0, 0.0)
-
-
 def test_every_field_that_is_a_place_is_moved():
     """A place that a new kind of pattern has is not left behind."""
     of_kinds = {one for kind in typing.get_args(AnyPattern) for one in kind.__struct_fields__}
@@ -140,18 +133,6 @@ def test_an_unknown_name_is_answered_with_the_nearest():
     )
     assert "the nearest is stock:radial" in refusal(Use(name="stock:radiall"))
     assert "the nearest is stock:radial" in refusal(Use(name="stcok:radial"))
-
-
-def test_uses_that_lead_back_to_themselves_are_refused():
-    sentence = refusal(
-        Use(name="a"),
-        a=Use(name="b"),
-        b=Tile(width_mm=5, height_mm=5, part=Use(name="c")),
-        c=Use(name="a"),
-    )
-    assert sentence == "textures c uses itself: a, b, c, a; leave one of these uses out"
-    assert "uses itself: a, a" in refusal(Use(id="a", name="a"))
-    assert "uses itself" in refusal(Group(id="a", parts=(Use(name="a"),)))
 
 
 def test_a_texture_that_nothing_uses_is_checked_all_the_same():

@@ -105,10 +105,6 @@ def test_a_part_that_is_not_there_is_left_out_of_its_group():
     assert only(1.0, group) == Group(operation="add", parts=(LINE,))
 
 
-def test_a_group_without_a_part_is_not_there():
-    assert at(1.0, Group(parts=(UniformVibration(zoom_from=2),))).elements == ()
-
-
 def test_in_a_blend_and_a_weighted_sum_it_is_at_rest():
     far = UniformVibration(zoom_from=2)
     blend = only(1.0, Group(operation="blend", parts=(LINE, far), by=far))
@@ -127,12 +123,6 @@ def test_a_fill_that_is_not_there_leaves_the_stroke():
 def test_a_tile_or_motion_of_nothing_is_not_there():
     far = Dots(centers_mm=((2, 2),), zoom_from=2)
     assert at(1.0, Tile(width_mm=5, height_mm=5, part=far), Moving(part=far)).elements == ()
-
-
-def test_levels_within_a_tile_go_by_the_zoom_of_the_picture():
-    group = Group(parts=(LINE, msgspec.structs.replace(LINE, zoom_from=2)))
-    found = only(2.0, Tile(width_mm=5, height_mm=5, part=group))
-    assert found.part.parts == (LINE, LINE)
 
 
 def test_a_scene_that_would_be_too_large_is_refused():

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 ARMS_MM: Final = (222.3, 245.6, 62.7)  # from the root
-COUNTS_A_TURN: Final = 65_536
 # How far the array's centre goes.
 WIDTH_MM: Final = LATERO.travel_mm
 HEIGHT_MM: Final = LATERO.height_mm
@@ -29,7 +28,7 @@ ROOT_Y_MM: Final = -61.2 - LATERO_DISC_MM / 2
 # Where the array is put when the encoders are reset: the lower left corner, not turned. The third
 # arm stands straight up there: from the array it goes straight away from the reader.
 RESET: Final = (0.0, HEIGHT_MM, 0.0)
-_RAD_A_COUNT: Final = 2 * math.pi / COUNTS_A_TURN
+_RAD_A_COUNT: Final = 2 * math.pi / 65_536
 _HALF, _WHOLE = 1 << 31, 1 << 32  # the encoders count modulo 2³²
 
 

@@ -12,7 +12,7 @@ import sys
 import threading
 import time
 from contextlib import suppress
-from typing import Any, Final, NamedTuple, Self
+from typing import Any, Final, NamedTuple
 
 from vbraille.errors import InputError
 from vbraille.wording import setting
@@ -78,7 +78,7 @@ def load_brlapi() -> Any:
 
 
 class ConventionalDisplay:
-    """A conventional display. A context manager; at the end the display is given back.
+    """A conventional display, until `close`; then it is given back.
 
     Parameters
     ----------
@@ -164,12 +164,6 @@ class ConventionalDisplay:
         self._ended = True
         self._wakes.set()
         self._thread.join(_END_S)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def _run(self) -> None:
         """Drive the display whenever it is there."""

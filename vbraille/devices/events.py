@@ -70,14 +70,6 @@ class Back(Event, frozen=True):
     says = "device: back"
 
 
-class Stranger(Event, frozen=True):
-    """A device that came back and cannot take the place of the device that reading began on."""
-
-    was: str
-    why: str
-    says = "device: {why}; reading goes on once {was} is back"
-
-
 class WatchdogTripped(Event, frozen=True):
     """The device went to rest because no frame reached it in time."""
 

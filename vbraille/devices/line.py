@@ -13,7 +13,6 @@ import os
 import socket
 import stat
 import termios
-import threading
 import time
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -24,13 +23,12 @@ from urllib.parse import parse_qsl, urlsplit
 from vbraille.errors import DeviceError, InputError, VbrailleError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
 BAUD: Final = 921_600
 _BAUD_RANGE: Final = (300, 12_000_000)
 _MOST_BYTES: Final = 65_536
-_CONNECT_S: Final = 3.0
-_LOOK_S: Final = 0.1  # between attempts to open a port that is gone
+_CONNECT_S: Final = 0.8  # a loop that looks for its device waits for so long
 _DRAIN_S: Final = 0.05  # that the last bytes may take to go out
 
 
@@ -261,47 +259,3 @@ def find_again(address: Address, identity: tuple[object, ...] | None) -> Address
         if found == identity:
             return replace(address, where=port)
     raise OSError(errno.ENODEV, "not plugged in")
-
-
-class Reopening(threading.Thread):
-    """Closes a line that is gone, or has fallen silent, and opens it again: both may be slow.
-
-    Parameters
-    ----------
-    line
-        The line.
-    open_again
-        Function that opens it; what it raises means that it is not back yet.
-
-    Attributes
-    ----------
-    line : Line or None
-        The new line, once there is one.
-    """
-
-    def __init__(self, line: Line, open_again: Callable[[], Line]) -> None:
-        super().__init__(name="vbraille port", daemon=True)
-        self.line: Line | None = None
-        self._gone, self._open = line, open_again
-        self._stopped = threading.Event()
-        self.start()
-
-    def run(self) -> None:
-        """Look for the port until it is back."""
-        with suppress(OSError):  # it begins with the priority of the thread that drives actuators
-            os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
-        self._gone.close()
-        while not self._stopped.wait(_LOOK_S):
-            with suppress(VbrailleError, OSError):
-                line = self._open()
-                if self._stopped.is_set():
-                    line.close()
-                self.line = line
-                return
-
-    def stop(self) -> None:
-        """Look no more, and close what was found."""
-        self._stopped.set()
-        self.join(1.0)
-        if self.line is not None:
-            self.line.close()

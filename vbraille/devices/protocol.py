@@ -25,7 +25,6 @@ from vbraille.devices.events import (
     Notice,
     Silent,
     SlowActuators,
-    Stranger,
     WatchdogTripped,
 )
 from vbraille.display import Display, Pose
@@ -315,7 +314,6 @@ class Conversation:
         self._buttons: int | None = None  # None before the first STATE of all
         self._knobs: list[int] | None = None  # positions that were told of
         self._zero_ns = self._zero_due_ns = 0
-        self._stranger: Stranger | None = None  # what was told of last
         self._out = b"\0"
 
     @property
@@ -391,20 +389,22 @@ class Conversation:
 
     def rest(self, now_ns: int) -> None:
         """Have the device rest, and be sent FRAMEs again once it does."""
-        self.rests += self.stage is Stage.LIVE
-        self.stage, self._due_ns = Stage.RESTING, now_ns
+        self._go(Stage.RESTING, now_ns)
         self._number = (self._number + 1) & 0xFFFF
-        self.sent_ns = self._probe = None
 
     def greet(self, now_ns: int) -> None:
         """Greet the device anew: it was silent, or its port was opened again."""
-        self.rests += self.stage is Stage.LIVE
-        self.stage, self._due_ns = Stage.GREETING, now_ns
-        self.sent_ns = self._probe = None
+        self._go(Stage.GREETING, now_ns)
         self._press(0, now_ns)  # no hand holds the buttons of a device that is not there
         self._pieces, self._of_pieces = {}, 0
         self.lines.clear()
         self._out = b"\0"
+
+    def _go(self, stage: Stage, now_ns: int) -> None:
+        """Send no FRAMEs for now."""
+        self.rests += self.stage is Stage.LIVE
+        self.stage, self._due_ns = stage, now_ns
+        self.sent_ns = self._probe = None
 
     def zero(self, now_ns: int) -> None:
         """Say that the carriage is at its stop, until the device says so, too."""
@@ -418,8 +418,7 @@ class Conversation:
         _, version, number, count = body[:4]
         if version != VERSION:
             said = f"a device answers that speaks version {version} of the protocol"
-            self._refuse(f"{said}; this vbraille speaks version {VERSION}")
-            return
+            raise DeviceError(f"{said}; this vbraille speaks version {VERSION}")
         if self.stage is Stage.LIVE:  # someone else has asked
             self._meet_other(now_ns)
         if self.stage is not Stage.GREETING or number >= count or count > MOST_PIECES:
@@ -435,29 +434,21 @@ class Conversation:
         try:
             info = read_info(text)
         except ValueError as error:
-            self._refuse(str(error))
-            return
+            raise DeviceError(str(error)) from None
         if was is not None and info != was:
             other = info.name if info.name != was.name else f"another {was.name}"
-            self._refuse(f"{other} came back in the place of {was.name}; plug in the one before")
-            return
+            raise DeviceError(
+                f"{other} came back in the place of {was.name}; plug in the one before, and begin "
+                f"again"
+            )
         if was is not None:
             self.events.append(Back())
         elif info.fast / info.top < _USUAL_SHARE:
             speed_mm_s = _USUAL_MM_S * info.fast / info.top / _USUAL_SHARE
             self.events.append(SlowActuators(math.floor(speed_mm_s)))
-        self.info, self.state, self._stranger = info, None, None
+        self.info, self.state = info, None
         self._heard_ns, self._silent = now_ns, False
         self.rest(now_ns)
-
-    def _refuse(self, why: str) -> None:
-        """Refuse a device: at the start that is an error, later the right one may come."""
-        if self.info is None:
-            raise DeviceError(why)
-        stranger = Stranger(self.info.name, why)
-        if stranger != self._stranger:
-            self._stranger = stranger
-            self.events.append(stranger)
 
     def _hear_text(self, code: int, text: str) -> None:
         if self.stage is Stage.GREETING or self.info is None:
@@ -506,7 +497,8 @@ class Conversation:
             self._knobs = list(state.knobs)
         for number in range(info.knobs):
             position = state.knobs[number]
-            if _turned(self._knobs[number], position):
+            far = abs(position - self._knobs[number])
+            if far > 1 or (far and position in (0, KNOB_TOP)):  # else it just jitters
                 self._knobs[number] = position
                 self.events.append(Knob(number + 1, position / KNOB_TOP))
         self.dropped += (state.dropped - before.dropped) & 0xFF
@@ -561,8 +553,3 @@ class Conversation:
             turns = state.turn / info.counts_per_turn
             theta_rad = math.tau * (turns - round(turns))
         return Pose(self._time_us * _NS_PER_US, x_mm, y_mm, theta_rad)
-
-
-def _turned(before: int, now: int) -> bool:
-    """Tell whether a knob was turned, and does not just jitter; its ends are always told."""
-    return now != before and (abs(now - before) >= 2 or now in (0, KNOB_TOP))

@@ -68,8 +68,13 @@ def open_device(
             try:
                 if fits:
                     check_actuators(device.display, wanted)
-                if often:
-                    _check_fast_enough(device.display, wanted.rate_hz)
+                own_hz = device.display.rate_hz
+                if often and own_hz < wanted.rate_hz:
+                    raise InputError(
+                        f"{device.display.name} is made for {own_hz:g} frames a second and "
+                        f"{wanted.rate_hz:g} are asked for; choose {setting('rate')} {own_hz:g} or "
+                        f"less"
+                    )
             except InputError:
                 device.close()
                 raise
@@ -184,13 +189,4 @@ def check_height(display: Display, height_mm: float | None) -> None:
         raise InputError(
             f"the carriage of {display.name} {far} and {setting('height')} asks for "
             f"{height_mm:g} mm; leave {setting('height')} out"
-        )
-
-
-def _check_fast_enough(info: Display, rate_hz: float) -> None:
-    """Raise InputError if a device is too slow for the loop."""
-    if info.rate_hz < rate_hz:
-        raise InputError(
-            f"{info.name} is made for {info.rate_hz:g} frames a second and {rate_hz:g} "
-            f"are asked for; choose {setting('rate')} {info.rate_hz:g} or less"
         )

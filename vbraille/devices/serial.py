@@ -14,9 +14,9 @@ import numpy as np
 
 from vbraille.devices.base import Device, Particulars
 from vbraille.devices.events import Placed, Placing, Unplugged
-from vbraille.devices.line import Line, Reopening, find_again, parse_address, usb_identity
+from vbraille.devices.line import Line, find_again, parse_address, usb_identity
 from vbraille.devices.protocol import VERSION, Conversation
-from vbraille.errors import DeviceError
+from vbraille.errors import DeviceError, VbrailleError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 BOOT_S: Final = 5.0  # that a board may take to start, since opening its port may reset it
 _SOCKET_S: Final = 2.0  # after which a socket that is silent is opened again
 _LOOK_S: Final = 0.001
+_AGAIN_NS: Final = 100_000_000  # between attempts to open a port that is gone
 _log = logging.getLogger(__name__)
 
 
@@ -67,7 +68,8 @@ class SerialDevice(Device):
         self._identity = None if address.is_socket else usb_identity(address.where)
         self._silent_ns = round((_SOCKET_S if address.is_socket else self._boot_s) * 1e9)
         self._line = Line(address)
-        self._reopening: Reopening | None = None
+        self._away = False  # whether its port is gone, and looked for
+        self._look_ns = 0
         self._events: list[Event] = []
         self._losses = self._unsent = 0
         self._talk = Conversation(now_ns())
@@ -124,7 +126,7 @@ class SerialDevice(Device):
     @property
     def taking(self) -> bool:  # type: ignore[override]
         """Tell whether frames reach the actuators."""
-        return self._talk.live and self._reopening is None
+        return self._talk.live
 
     @property
     def acknowledged_ns(self) -> int | None:  # type: ignore[override]
@@ -144,7 +146,7 @@ class SerialDevice(Device):
     def read(self) -> Pose | None:
         """Newest pose since the last call, or None."""
         now_ns = self._now_ns()
-        if self._reopening is not None and not self._is_back(now_ns):
+        if self._away and not self._is_back(now_ns):
             return None
         talk = self._talk
         try:
@@ -159,10 +161,10 @@ class SerialDevice(Device):
                     self._line.drop_unsent()
                 self._line.write(message)
             if now_ns - self._since_ns > self._silent_ns:
-                self._reopen()
+                self._lose(now_ns)
         except OSError:
             self._events.append(Unplugged())
-            self._reopen()
+            self._lose(now_ns)
             return None
         placing = Placing.DONE if talk.placed else Placing.STOP
         if placing is not self.placing and talk.state is not None:
@@ -172,7 +174,7 @@ class SerialDevice(Device):
 
     def _send(self, frame: NDArray[np.float64]) -> bool:
         talk = self._talk
-        if not talk.live or self._reopening is not None:
+        if not talk.live:
             return False
         self._pack(frame, self._top, self._packed)
         now_ns = self._now_ns()
@@ -210,30 +212,31 @@ class SerialDevice(Device):
             "reconnections": self._losses,
         }
 
-    def _reopen(self) -> None:
-        """Open the port anew, in a thread: the device is gone, or has said nothing for long."""
+    def _lose(self, now_ns: int) -> None:
+        """Close the port, and look for it: the device is gone, or has said nothing for long."""
         _log.info("%s is opened again", self._address.where)
         self._losses += 1
-        self.descriptor = None
-        self._talk.greet(self._now_ns())
-        self._reopening = Reopening(
-            self._line, lambda: Line(find_again(self._address, self._identity))
-        )
+        self._away, self.descriptor = True, None
+        self._look_ns = now_ns + _AGAIN_NS
+        self._talk.greet(now_ns)
+        self._line.close()
 
     def _is_back(self, now_ns: int) -> bool:
-        assert self._reopening is not None
-        line = self._reopening.line
-        if line is None:
+        """Look whether the port can be opened again."""
+        if now_ns < self._look_ns:
             return False
-        self._line, self._reopening = line, None
-        self.descriptor = line.descriptor
-        self._since_ns = now_ns
-        self._talk.greet(now_ns)
+        try:
+            self._line = Line(find_again(self._address, self._identity))
+        except (VbrailleError, OSError):
+            self._look_ns = self._now_ns() + _AGAIN_NS
+            return False
+        self._away, self.descriptor = False, self._line.descriptor
+        self._since_ns = self._now_ns()
+        self._talk.greet(self._since_ns)
         return True
 
     def _release(self) -> None:
-        if self._reopening is not None:
-            self._reopening.stop()
+        if self._away:
             return
         try:
             self._line.write(self._talk.goodbye())

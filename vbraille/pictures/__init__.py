@@ -2,7 +2,7 @@
 
 `loading` reads a picture with all that it needs, `composing` compiles it, `index` tells what is
 under the finger, `checking` advises its author. `maps` draws pictures, `series` has the numbers of
-plots and `draw` draws them. `figurefiles`, `draw`, `drawings` and `blending` load matplotlib.
+plots and `draw` draws them. `figurefiles`, `draw` and `drawings` load matplotlib.
 """
 
 from vbraille.caching import keep_fonts

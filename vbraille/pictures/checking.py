@@ -13,6 +13,7 @@ from msgspec.structs import replace
 from vbraille.errors import InputError
 from vbraille.pictures.composing import compose
 from vbraille.pictures.index import distance_mm, is_open, label_of, outlines
+from vbraille.pictures.keys import crowded
 from vbraille.render.braille.models import STRESS2_8X8
 from vbraille.render.compiling import SceneMap
 from vbraille.scene.bitmap import WHOLE
@@ -70,9 +71,14 @@ class _Part:
     solid: NDArray[np.bool_]
 
     @property
-    def layer(self) -> str:
-        """Signal by which the part comes and goes; empty if it is always there."""
-        return self.pattern.factor
+    def is_label(self) -> bool:
+        """Tell whether the part is braille."""
+        return isinstance(self.pattern, Label)
+
+    @property
+    def is_dots(self) -> bool:
+        """Tell whether the part is dots."""
+        return isinstance(self.pattern, Dots)
 
     @property
     def where(self) -> tuple[slice, slice]:
@@ -96,6 +102,9 @@ def felt_advice(loaded: LoadedScene) -> tuple[str, ...]:
     Where parts are there at some zooms only, the picture is looked at from each of these on.
     """
     said = dict.fromkeys(_Check(loaded).advice())
+    for label in crowded(loaded):
+        text = " ".join(label.text.split())
+        said[f'label "{text}" does not fit; map and feel show a number for it with --key'] = None
     for zoom in levels(*loaded.opened.resolved.elements):
         try:
             advice = [*_Check(loaded.zoomed(zoom)).advice()]
@@ -189,7 +198,7 @@ class _Check:
         alone = replace(self._scene, elements=(pattern,), operation="overwrite")
         shown = SceneMap(alone, self._loaded.assets)
         places = (columns + 0.5) * step, (rows + 0.5) * step
-        hides = shown.opacity(*places, every_layer=True)
+        hides = shown.deflections(*places, is_mask=True, every_layer=True)
         felt = hides >= _FELT
         if isinstance(pattern, Label):
             felt = np.ones_like(felt)
@@ -206,7 +215,7 @@ class _Check:
                     part.pattern,
                     "is wholly hidden by what is written after it; write it later, or leave it out",
                 )
-            if part.covers and not part.layer:
+            if part.covers and not part.pattern.factor:
                 under |= part.solid
 
     def _beside(self, parts: list[_Part]) -> Iterator[str]:
@@ -215,60 +224,58 @@ class _Check:
         far = math.ceil(_TOGETHER_MM / self._step_mm) + 1
         told = 0
         for first, second in combinations(parts, 2):
-            if first.layer and second.layer and first.layer != second.layer:
+            layers = first.pattern.factor, second.pattern.factor
+            if all(layers) and layers[0] != layers[1]:
                 continue  # they may never be there together
-            vibrating = [bool(frequencies(part.pattern)) for part in (first, second)]
-            reach = far if all(vibrating) else near
-            (rows, columns), (other_rows, other_columns) = first.where, second.where
-            if (
-                rows.start - reach >= other_rows.stop
-                or other_rows.start - reach >= rows.stop
-                or columns.start - reach >= other_columns.stop
-                or other_columns.start - reach >= columns.stop
+            vibrate = [bool(frequencies(part.pattern)) for part in (first, second)]
+            reach = far if all(vibrate) else near
+            if any(
+                one.start - reach >= other.stop or other.start - reach >= one.stop
+                for one, other in zip(first.where, second.where, strict=True)
             ):
                 continue
-            label, other = (first, second) if isinstance(first.pattern, Label) else (second, first)
             common = self._common(first, second)
-            if common and isinstance(label.pattern, Label):
+            if common:
+                label, other = sorted((first, second), key=lambda part: not part.is_label)
                 is_before = other is first and common == label.felt.size and label.covers
-                sentence = f"lies on {self._called(other)}; move it to where nothing else is felt"
-                if not is_before:
-                    yield self._said(label.number, label.pattern, sentence)
-            elif not common and told < _MOST_SAID and not _are_dots(first, second):
-                blank_mm = self._blank_mm(first, second, reach)
-                # Nearer, they touch; and where a stroke begins is felt no finer.
-                if all(vibrating) and LEAST_BLANK_MM <= blank_mm < _TOGETHER_MM:
-                    told += 1
-                    yield self._said(
-                        first.number,
-                        first.pattern,
-                        f"vibrates {blank_mm:.0f} mm from {self._called(second)}, which vibrates, "
-                        "too; both are under one finger, and each drowns the other: let one be "
-                        f"still, or set them {_TOGETHER_MM:g} mm apart",
-                    )
-                elif self._step_mm < blank_mm < LEAST_BLANK_MM - 1.01 * self._step_mm:
-                    told += 1
-                    more = ", which a vibration fills" if any(vibrating) else ""
-                    yield self._said(
-                        first.number,
-                        first.pattern,
-                        f"stands less than {LEAST_BLANK_MM:g} mm from {self._called(second)}, with "
-                        f"{blank_mm:.1f} mm of blank{more}",
-                    )
+                if label.is_label and not is_before:
+                    what = f"lies on {self._called(other)}; move it to where nothing else is felt"
+                    yield self._said(label.number, label.pattern, what)
+                continue
+            of_one = first.number == second.number
+            if told == _MOST_SAID or (of_one and first.is_dots and second.is_dots):
+                continue  # such as the dots of an image
+            blank_mm, other = self._blank_mm(first, second, reach), self._called(second)
+            # Nearer, they touch; and where a stroke begins is felt no finer.
+            if all(vibrate) and LEAST_BLANK_MM <= blank_mm < _TOGETHER_MM:
+                what = (
+                    f"vibrates {blank_mm:.0f} mm from {other}, which vibrates, too; both are under "
+                    "one finger, and each drowns the other: let one be still, or set them "
+                    f"{_TOGETHER_MM:g} mm apart"
+                )
+            elif self._step_mm < blank_mm < LEAST_BLANK_MM - 1.01 * self._step_mm:
+                more = ", which a vibration fills" if any(vibrate) else ""
+                what = (
+                    f"stands less than {LEAST_BLANK_MM:g} mm from {other}, with {blank_mm:.1f} mm "
+                    f"of blank{more}"
+                )
+            else:
+                continue
+            told += 1
+            yield self._said(first.number, first.pattern, what)
 
     def _called(self, part: _Part) -> str:
         name = self._element(part.number)
-        inner = label_of(part.pattern)
         is_whole = part.pattern is self._scene.elements[part.number]
-        return name if is_whole else f"the {inner or kind_of(part.pattern)} of {name}"
+        inner = label_of(part.pattern) or kind_of(part.pattern)
+        return name if is_whole else f"the {inner} of {name}"
 
     def _common(self, one: _Part, other: _Part) -> int:
         """Count the places at which two parts are felt."""
         top, left = max(one.top, other.top), max(one.left, other.left)
-        masks = [part.felt[top - part.top :, left - part.left :] for part in (one, other)]
-        rows, columns = (min(mask.shape[n] for mask in masks) for n in (0, 1))
-        first, second = (mask[:rows, :columns] for mask in masks)
-        return int((first & second).sum())
+        first, second = (part.felt[top - part.top :, left - part.left :] for part in (one, other))
+        rows, columns = np.minimum(first.shape, second.shape)
+        return int((first[:rows, :columns] & second[:rows, :columns]).sum())
 
     def _blank_mm(self, one: _Part, other: _Part, reach: int) -> float:
         """Distance between two parts that have no place in common; infinite beyond a reach."""
@@ -278,18 +285,8 @@ class _Check:
             first, second = second, first[((first >= low) & (first <= high)).all(axis=1)]
             if not len(second):
                 return math.inf
-        least = min(
-            float(np.hypot(*(second[n : n + 256, None] - first).transpose(2, 0, 1)).min())
-            for n in range(0, len(second), 256)
-        )
+        least = min(float(np.hypot(*(first - place).T).min()) for place in second)
         return max(least - 1.0, 0.0) * self._step_mm
-
-
-def _are_dots(*parts: _Part) -> bool:
-    """Tell whether parts are dots of one element, such as those of an image."""
-    return len({part.number for part in parts}) == 1 and all(
-        isinstance(part.pattern, Dots) for part in parts
-    )
 
 
 def _open(pattern: AnyPattern, covers: bool) -> Iterator[tuple[AnyPattern, bool]]:

@@ -105,6 +105,13 @@ class SceneIndex:
         Bitmaps of its images and cells of its labels.
     known
         Boxes of images and labels.
+
+    Attributes
+    ----------
+    elements : list of NamedElement
+        The elements, as they are written.
+    switches : int
+        States of the scene's switches; other states show other elements.
     """
 
     def __init__(
@@ -113,29 +120,16 @@ class SceneIndex:
         assets: Assets,
         known: Mapping[Image | Label, Box] | None = None,
     ) -> None:
-        self._scene, self._assets = scene, assets
-        self._switches = 0
+        self._scene, self._assets, self._known = scene, assets, known or {}
+        self.switches = 0
         # In compiled code, which thousands of dots do not hold up.
-        self._map_of = lru_cache(_MOST_COMPILED)(self._compile)
-        self._known = {} if known is None else known
-        self._canvas = Box(0.0, 0.0, scene.canvas.width_mm, scene.canvas.height_mm)
+        self._leaf_map = lru_cache(_MOST_COMPILED)(lambda at: self._alone(self._leaves[at].pattern))
         self._points = lru_cache(_MOST_COMPILED)(self._find_points)
+        self._canvas = Box(0.0, 0.0, scene.canvas.width_mm, scene.canvas.height_mm)
         self.elements: list[NamedElement] = []
-        self._leaves: list[_Leaf] = []
-        for pattern in scene.elements:
-            self._leaves += self._leaves_of(pattern, None)
-        boxes = [_EVERYWHERE if leaf.box is None else leaf.box for leaf in self._leaves]
+        self._leaves = [leaf for one in scene.elements for leaf in self._leaves_of(one, None)]
+        boxes = [leaf.box or _EVERYWHERE for leaf in self._leaves]
         self._edges = np.array(boxes, float).reshape(-1, 4).T
-
-    @property
-    def switches(self) -> int:
-        """States of the scene's switches; other states show other elements."""
-        return self._switches
-
-    @switches.setter
-    def switches(self, switches: int) -> None:
-        self._switches = switches
-        self._points.cache_clear()
 
     def here(self, x_mm: float, y_mm: float) -> NamedElement | None:
         """Find the uppermost element with a name at a place in mm; None if there is none."""
@@ -149,19 +143,17 @@ class SceneIndex:
         """
         leaf = self._leaf_at(x_mm, y_mm)
         if leaf is not None:
-            pattern = leaf.pattern
-            stroke = pattern.stroke if isinstance(pattern, Shape) else None
+            stroke = leaf.pattern.stroke if isinstance(leaf.pattern, Shape) else None
             half_mm = _EDGE_MM if stroke is None else stroke.width_mm / 2
-            away_mm = min(
-                (distance_mm(one, x_mm, y_mm) for one in outlines(pattern)), default=math.inf
-            )
-            return Spot(leaf.element, "edge" if away_mm <= half_mm else "on")
+            near = any(distance_mm(one, x_mm, y_mm) <= half_mm for one in outlines(leaf.pattern))
+            return Spot(leaf.element, "edge" if near else "on")
         around = [
-            ((leaf.box.right - leaf.box.left) * (leaf.box.bottom - leaf.box.top), number)
-            for number in self._covering(x_mm, y_mm)
-            if (leaf := self._leaves[number]).box and _is_within(leaf.pattern, x_mm, y_mm)
+            leaf
+            for leaf in map(self._leaves.__getitem__, self._covering(x_mm, y_mm))
+            if _is_within(leaf.pattern, x_mm, y_mm)
         ]
-        return Spot(self._leaves[min(around)[1]].element, "inside") if around else None
+        smallest = min(around, key=lambda leaf: _area(leaf.box), default=None)
+        return None if smallest is None else Spot(smallest.element, "inside")
 
     def encloses(self, element: NamedElement, x_mm: float, y_mm: float) -> bool:
         """Tell whether an outline of an element is around a place in mm."""
@@ -179,28 +171,25 @@ class SceneIndex:
         middle = (box.left + box.right) / 2, (box.top + box.bottom) / 2
         if self.here(*middle) is element:
             return middle
-        points = self._points(element)
-        if not len(points):
+        nearest = _sorted_from(middle, self._points(element, self.switches))
+        if not nearest:
             return middle
-        nearest = points[np.argsort(np.hypot(*(points - middle).T), kind="stable")]
         tried = nearest[:: max(1, len(nearest) // _MOST_TRIED)]
-        seen = (point for point in tried.tolist() if self.here(*point) is element)
-        x_mm, y_mm = next(seen, nearest[0].tolist())
-        return x_mm, y_mm
+        return next((point for point in tried if self.here(*point) is element), nearest[0])
 
     def nearest(self, x_mm: float, y_mm: float) -> tuple[NamedElement, tuple[float, float]] | None:
         """Find the element that is felt nearest to a place, and where; both in mm."""
+        here = x_mm, y_mm
         found = []
-        boxes = [(_to_box(element.box, x_mm, y_mm), n) for n, element in enumerate(self.elements)]
+        boxes = [(_to_box(element.box, *here), n) for n, element in enumerate(self.elements)]
         for away_mm, number in sorted(boxes)[:_MOST_NEAR]:
-            points = self._points(self.elements[number])
-            if len(points) and math.isfinite(away_mm):
-                away = np.hypot(points[:, 0] - x_mm, points[:, 1] - y_mm)
-                found.append((away.min(), number, points[away.argmin()].tolist()))
+            points = _sorted_from(here, self._points(self.elements[number], self.switches))
+            if points and math.isfinite(away_mm):
+                found.append((math.dist(points[0], here), number, points[0]))
         if not found:
             return None
-        _, number, (to_x_mm, to_y_mm) = min(found)
-        return self.elements[number], (to_x_mm, to_y_mm)
+        _, number, point = min(found)
+        return self.elements[number], point
 
     def inside(self) -> tuple[float, float]:
         """Find a place in mm where the picture is felt, as near to its middle as there is one."""
@@ -210,19 +199,38 @@ class SceneIndex:
         found = self.nearest(*middle)
         if found is not None:
             return found[1]
-        points = self._felt(self._scene, self._canvas)
-        if not len(points):
-            return middle
-        x_mm, y_mm = points[np.hypot(*(points - middle).T).argmin()].tolist()
-        return x_mm, y_mm
+        whole = self._felt(SceneMap(self._scene, self._assets), self._canvas)
+        return next(iter(_sorted_from(middle, whole)), middle)
 
-    def _find_points(self, element: NamedElement) -> NDArray[np.float64]:
+    def find(self, text: str) -> NamedElement | None:
+        """Find an element by its id or title, or by what one of these begins with or has in it."""
+        wanted = text.strip().casefold()
+        names = [(element.name.casefold(), element) for element in self.elements]
+        names += [(element.pattern.id.casefold(), element) for element in self.elements]
+        for fits in (str.__eq__, str.startswith, str.__contains__):
+            for name, element in names:
+                if wanted and fits(name, wanted):
+                    return element
+        return None
+
+    def opacity(self, number: int, x_mm: float, y_mm: float) -> float:
+        """Tell how much of what lies below a part, by its number, it hides at a place: 0 … 1."""
+        at = np.array([x_mm]), np.array([y_mm])
+        return float(
+            self._leaf_map(number).deflections(*at, is_mask=True, switches=self.switches)[0, 0]
+        )
+
+    def _alone(self, pattern: AnyPattern) -> SceneMap:
+        alone = replace(self._scene, elements=(pattern,), operation="overwrite")
+        return SceneMap(alone, self._assets)
+
+    def _find_points(self, element: NamedElement, switches: int) -> NDArray[np.float64]:
         """Places where an element by itself is felt, float64[n, 2] in mm."""
-        alone = replace(self._scene, elements=(element.pattern,), operation="overwrite")
-        return self._felt(alone, element.box)
+        del switches  # which tell one answer from another
+        return self._felt(self._alone(element.pattern), element.box)
 
-    def _felt(self, scene: Scene, box: Box) -> NDArray[np.float64]:
-        """Places of a box where a scene is felt, float64[n, 2] in mm."""
+    def _felt(self, drawn: SceneMap, box: Box) -> NDArray[np.float64]:
+        """Places of a box where something is felt, float64[n, 2] in mm."""
         if box.is_empty:
             return np.empty((0, 2))
         x_mm, y_mm = (
@@ -230,9 +238,8 @@ class SceneIndex:
             for low, high in ((box.left, box.right), (box.top, box.bottom))
             for count in [min(max(int((high - low) / _STEP_MM), 1), _MOST_STEPS)]
         )
-        shown = SceneMap(scene, self._assets).opacity(x_mm, y_mm, switches=self.switches)
-        felt = shown >= min(_FELT, max(float(shown.max()) / 2, _TRACE))
-        rows, columns = np.nonzero(felt)
+        shown = drawn.deflections(x_mm, y_mm, is_mask=True, switches=self.switches)
+        rows, columns = np.nonzero(shown >= min(_FELT, max(float(shown.max()) / 2, _TRACE)))
         return np.stack((x_mm[columns], y_mm[rows]), axis=1)
 
     def _covering(self, x_mm: float, y_mm: float) -> list[int]:
@@ -254,42 +261,11 @@ class SceneIndex:
                 found, most = self._leaves[at], share
         return found
 
-    def opacity(self, number: int, x_mm: float, y_mm: float) -> float:
-        """Tell how much of what lies below a part, by its number, it hides at a place: 0 … 1."""
-        shown, at = self._map_of(number), (np.array([x_mm]), np.array([y_mm]))
-        return float(shown.opacity(*at, switches=self.switches)[0, 0])
-
-    def find(self, text: str) -> NamedElement | None:
-        """Find an element by its id or title, or by what one of these begins with or has in it."""
-        wanted = text.strip().casefold()
-        if not wanted:
-            return None
-        names = [element.name.casefold() for element in self.elements]  # which are said
-        ids = [element.pattern.id.casefold() for element in self.elements]
-        for fits in (
-            lambda name: name == wanted,
-            lambda name: name.startswith(wanted),
-            lambda name: wanted in name,
-        ):
-            for given in (names, ids):
-                for element, name in zip(self.elements, given, strict=True):
-                    if fits(name):
-                        return element
-        return None
-
-    def _compile(self, number: int) -> SceneMap:
-        alone = replace(
-            self._scene, elements=(self._leaves[number].pattern,), operation="overwrite"
-        )
-        return SceneMap(alone, self._assets)
-
     def _leaves_of(self, pattern: AnyPattern, above: NamedElement | None) -> Iterator[_Leaf]:
         """Patterns within one that are no groups, with the elements by whose names they go."""
-        box = None if isinstance(pattern, Group) and above else bounds(pattern, self._known)
         name = label_of(pattern)
+        box = bounds(pattern, self._known)
         if name or ((pattern.description or pattern.sound) and above is None):
-            if isinstance(pattern, Group):
-                box = bounds(pattern, self._known)
             covered = self._canvas if box is None else box.common(self._canvas)
             above = NamedElement(name or "without a title", pattern, covered)
             self.elements.append(above)
@@ -298,8 +274,19 @@ class SceneIndex:
             for part in pattern.parts:
                 yield from self._leaves_of(part, above)
         elif above is not None:
-            box = bounds(pattern, self._known) if box is None else box
             yield _Leaf(pattern, above, box)
+
+
+def _sorted_from(
+    place: tuple[float, float], points: NDArray[np.float64]
+) -> list[tuple[float, float]]:
+    """Places by their distance from one, the nearest first."""
+    order = np.argsort(np.hypot(*(points - place).T), kind="stable")
+    return [(x, y) for x, y in points[order].tolist()]
+
+
+def _area(box: Box | None) -> float:
+    return math.inf if box is None else (box.right - box.left) * (box.bottom - box.top)
 
 
 def is_open(group: Group) -> bool:

@@ -2,34 +2,43 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
+
+import msgspec
+import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.pictures import scenes
-from vbraille.pictures.scenewords import scene_lines, scene_text
-from vbraille.scene.signals import Switch, packed
+from vbraille.pictures.scenewords import WAYS, scene_lines, signal_words
+from vbraille.pictures.words import plain
+from vbraille.scene.scene import Canvas
+from vbraille.scene.signals import Direction, Pulse, Speed, Switch, made_of, ordered, packed
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from vbraille.files import Content
-    from vbraille.pictures.drawings import ArrayOnMap
     from vbraille.pictures.loading import LoadedScene
     from vbraille.render import Model
     from vbraille.scene.scene import Scene
+    from vbraille.scene.signals import AnySignal
 
 KINDS = ("png", "svg", "csv", "pdf", "gif")
-MOST_FRAMES = 500
 _LEAST_RULERS_PER_MM = 1.0  # at which numbers can be read
 _FINE_PER_MM = 12.0  # of outlines, of which a PNG has edges
 # When vibrations of 50 Hz are at their ends: an array that is drawn shows them best then.
 _ARRAY_TIME_S = 0.005
+_SIGNAL_MM, _SIGNAL_STEPS = 90.0, 121  # side of a plot of a signal, and its velocities along it
+_BEYOND = 1.25  # times the greatest speed at which the signal still changes
+_USUAL_MM_S = 20.0  # edge of the plot of a signal that no speed changes
+_TOLD_SPEEDS = 5
+_ALIKE = 5e-3  # what words with two decimals do not tell apart
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,9 +92,7 @@ class MapRequest:
     @property
     def resolution(self) -> float:
         """Pixels a mm."""
-        if self.per_mm is None:
-            return _FINE_PER_MM if self.outline else scenes.PIXELS_PER_MM
-        return self.per_mm
+        return self.per_mm or (_FINE_PER_MM if self.outline else scenes.PIXELS_PER_MM)
 
 
 def kind_of(path: Path) -> str:
@@ -127,43 +134,125 @@ def draw_map(
     InputError
         If the picture has no such switch, nothing of it swings, or the file would be too large.
     """
-    scene = _as_felt(loaded.scene, request)
-    drawing = _Drawing(loaded, scene, request)
-    if request.outline:
-        files: list[tuple[Path, Content]] = [(path, drawing.outline())]
-    elif not request.frames:
-        files = [(path, drawing.map())]
-    elif request.kind == "gif":
-        files = [(path, drawing.animation(request.frames))]
-    else:
-        files = [
-            (path.with_name(f"{path.stem}-{number:03}{path.suffix}"), content)
-            for number, content in enumerate(drawing.sequence(request.frames), 1)
+    switches = _packed(loaded.scene, request)
+    if loaded.scene.signals:
+        from vbraille.render.compiling import settled  # loads the kernels
+
+        loaded = replace(loaded, scene=settled(loaded.scene, request.velocity, switches))
+    contents, said = (_outline if request.outline else _maps)(loaded, request)
+    paths = [path]
+    if len(contents) > 1:
+        numbers = range(1, len(contents) + 1)
+        paths = [path.with_name(f"{path.stem}-{number:03}{path.suffix}") for number in numbers]
+    names = str(path) if len(paths) == 1 else f"{paths[0]} to {paths[-1]}"
+    lines = [f"drawn: {names}", *said, *scene_lines(loaded.scene)]
+    return list(zip(paths, contents, strict=True)), lines
+
+
+def _outline(loaded: LoadedScene, request: MapRequest) -> tuple[list[Content], list[str]]:
+    """Draw an outline; the file, and lines on it."""
+    from vbraille.pictures.drawings import outline_figure
+
+    canvas = loaded.scene.canvas
+    if request.kind == "png":
+        scenes.check_pixels(canvas, request.resolution)
+    said = [
+        "shown: an outline, black where more than half of the strongest deflection is felt",
+        f"paper: {canvas.width_mm:g} × {canvas.height_mm:g} mm, true to scale; print without "
+        "scaling",
+    ]
+    return [_file(loaded, request, outline_figure(loaded.scene, loaded.assets), said)], said
+
+
+def _maps(loaded: LoadedScene, request: MapRequest) -> tuple[list[Content], list[str]]:
+    """Draw a map, or the maps of a swing evenly over it; the files, and lines on them."""
+    scene, per_mm = loaded.scene, request.resolution
+    columns, rows = _check_room(scene.canvas, request)
+    what = "a row for each pixel" if request.kind == "csv" else "rest white, full swing black"
+    said = [f"shown: a deflection map, {what}", f"pixels: {columns} × {rows}, {per_mm:g} a mm"]
+    if not request.frames:
+        drawn = scenes.map_deflections(scene, loaded.assets, per_mm, noise_seed=request.seed)
+        said.append(f"vibration: as noise, seed {request.seed}")
+        content, more = _map(loaded, request, drawn, _ARRAY_TIME_S, said)
+        return [content], [*said, *more]
+    period_s = scenes.slowest_s(scene)
+    if period_s is None:
+        raise InputError("nothing in the picture vibrates or moves; leave out --frames")
+    said.append(
+        f"maps: {request.frames}, {1000 * period_s / request.frames:.4g} ms apart, of one slowest "
+        f"swing of {1000 * period_s:.4g} ms"
+    )
+    times = [period_s * number / request.frames for number in range(request.frames)]
+    drawn = (
+        scenes.map_deflections(scene, loaded.assets, per_mm, noise_seed=None, time_s=time_s)
+        for time_s in times
+    )
+    if request.kind == "gif":
+        told = f"{loaded.title}. {_told(loaded, said)}"
+        return [scenes.gif([scenes.grays(one) for one in drawn], told)], said
+    return [
+        _map(loaded, request, one, time_s, said)[0]
+        for one, time_s in zip(drawn, times, strict=True)
+    ], said
+
+
+def _check_room(canvas: Canvas, request: MapRequest) -> tuple[int, int]:
+    """Columns and rows of a map; maps of too many pixels are refused before the first is made."""
+    most, per_mm = scenes.MOST_PIXELS[request.kind], request.resolution
+    if request.kind == "png" and (request.rulers or request.array):
+        most = scenes.MOST_PLACED_PIXELS
+    if request.kind == "png" and request.rulers and per_mm < _LEAST_RULERS_PER_MM:
+        raise InputError(
+            f"{setting('resolution')} is {per_mm:g}, too coarse for the numbers of "
+            f"rulers; give {_LEAST_RULERS_PER_MM:g} or more, or choose .svg or .pdf"
+        )
+    return scenes.check_pixels(canvas, per_mm, request.frames or 1, most)
+
+
+def _map(
+    loaded: LoadedScene,
+    request: MapRequest,
+    deflections: NDArray[np.float32],
+    time_s: float,
+    said: list[str],
+) -> tuple[Content, list[str]]:
+    """Make the file of one map, with what is over it and around it; and lines on the array."""
+    if request.kind == "csv":
+        return scenes.map_csv(deflections, request.resolution), []
+    if request.kind == "png" and not request.array and not request.rulers:
+        told = {"Title": loaded.title, "Description": _told(loaded, said)}
+        return scenes.png(scenes.grays(deflections), request.resolution, told), []
+    from vbraille.pictures import drawings  # loads matplotlib
+    from vbraille.pictures.composing import compose
+
+    canvas, over, more = loaded.scene.canvas, None, list[str]()
+    if request.array:
+        x, y, angle = (*request.array, 0.0)[:3]
+        display = request.model.display
+        over = drawings.ArrayOnMap(display, x, y, angle, np.zeros(display.shape))
+        drawings.check_on_canvas(canvas, over)
+        at = np.array([x]), np.array([y])
+        frames = compose(loaded, display).poses(*at, math.radians(angle), time_s)[1]
+        over = over._replace(deflections=frames[0])
+        more = [
+            f"array: {request.model.title}, centre at {x:g}, {y:g} mm, turned by {angle:g}°, "
+            f"{1000 * time_s:.4g} ms after the start"
         ]
-    names = str(path) if len(files) == 1 else f"{files[0][0]} to {files[-1][0]}"
-    return files, [f"drawn: {names}", *drawing.said, *scene_lines(scene)]
+    rulers = (0.0, canvas.width_mm, canvas.height_mm, 0.0) if request.rulers else None
+    figure = drawings.map_figure(canvas, deflections, over, rulers=rulers)
+    return _file(loaded, request, figure, [*said, *more]), more
 
 
-def draw_signal(loaded: LoadedScene, name: str, request: MapRequest) -> tuple[Content, list[str]]:
-    """Draw how a signal of a picture answers to the velocity of the hand, as a polar plot.
-
-    Raises
-    ------
-    InputError
-        If there is no such signal or switch.
-    """
-    from vbraille.pictures import blending
+def _file(loaded: LoadedScene, request: MapRequest, figure: Any, said: list[str]) -> bytes:
     from vbraille.pictures.drawings import drawing_bytes
 
-    switches = _packed(loaded.scene, request)
-    drawn = blending.blending(loaded.scene, name, switches)
-    said = blending.blending_words(drawn)
-    if request.kind == "csv":
-        return blending.blending_csv(drawn), said
-    scenes.check_pixels(blending.SHEET, request.resolution, most=scenes.MOST_PLACED_PIXELS)
-    figure = blending.blending_figure(drawn)
-    told = "; ".join(said)
-    return drawing_bytes(figure, request.kind, request.resolution, loaded.title, told), said
+    told = _told(loaded, said)
+    return drawing_bytes(figure, request.kind, request.resolution, loaded.title, told)
+
+
+def _told(loaded: LoadedScene, said: list[str]) -> str:
+    """Description in the picture's file: how it is drawn, and what it holds."""
+    return "; ".join([*said, *scene_lines(loaded.scene)])
 
 
 def _packed(scene: Scene, request: MapRequest) -> int:
@@ -182,135 +271,82 @@ def _packed(scene: Scene, request: MapRequest) -> int:
     return packed(dict(request.switches), scene.signals)
 
 
-def _as_felt(scene: Scene, request: MapRequest) -> Scene:
-    """Scene under a hand of the request's velocity, with its switches."""
-    switches = _packed(scene, request)
-    if not scene.signals:
-        return scene
-    from vbraille.render.compiling import settled  # loads the kernels
+def draw_signal(loaded: LoadedScene, name: str, request: MapRequest) -> tuple[Content, list[str]]:
+    """Draw how a signal answers to each velocity of the hand: Lévesque 2009, 9.6.
 
-    return settled(scene, request.velocity, switches)
+    The picture is a grid of velocities as the canvas has them, right at the right and down below,
+    with rest in the middle.
 
+    Raises
+    ------
+    InputError
+        If there is no such signal or switch, or the hand does not change it.
+    """
+    from vbraille.render.compiling import SceneMap  # loads the kernels
 
-class _Drawing:
-    """A scene that is drawn; `said` gathers lines on what is shown."""
+    if request.kind == "gif":
+        raise InputError("a signal is drawn as .png, .svg, .pdf or .csv")
+    signals, switches = loaded.scene.signals, _packed(loaded.scene, request)
+    if name not in signals:
+        known = ", ".join(map(plain, signals)) or "none"
+        raise InputError(f"the picture has no signal {plain(name)!r}; its signals are: {known}")
+    within = dict(_within(signals, name))
+    answering = [one for one in within.values() if isinstance(one, Speed | Direction)]
+    if not answering:
+        raise InputError(f"signal {plain(name)!r} does not depend on the velocity of the hand")
+    steady: dict[str, AnySignal] = {
+        one: Switch(levels=(1.0, 1.0)) if isinstance(signal, Pulse) else signal
+        for one, signal in signals.items()
+    }
+    shown = SceneMap(msgspec.structs.replace(loaded.scene, signals=steady, elements=()))
+    number = [one.name for one in ordered(steady)].index(name)
 
-    def __init__(self, loaded: LoadedScene, scene: Scene, request: MapRequest) -> None:
-        self._assets, self._title = loaded.assets, loaded.title
-        self._scene, self._request = scene, request
-        self._per_mm = request.resolution
-        self.said: list[str] = []
+    def value(x_mm_s: float, y_mm_s: float) -> float:
+        return shown.signal_values(0.0, (x_mm_s, y_mm_s), switches)[number]
 
-    def outline(self) -> bytes:
-        from vbraille.pictures.drawings import outline_figure
-
-        canvas = self._scene.canvas
-        if self._request.kind == "png":
-            scenes.check_pixels(canvas, self._per_mm)
-        size = f"{canvas.width_mm:g} × {canvas.height_mm:g} mm"
-        self.said = [
-            "shown: an outline, black where more than half of the strongest deflection is felt",
-            f"paper: {size}, true to scale; print without scaling",
+    edge = _BEYOND * max(map(_fastest, answering)) or _USUAL_MM_S
+    said = [
+        f"shown: signal {plain(name)} against the velocity of the hand, white 0 and black 1; "
+        "a hand at rest is in the middle, one that goes to the right at the right",
+        f"edge: {edge:g} mm/s",
+        *(f"signal {plain(one)}: {signal_words(signal)}" for one, signal in within.items()),
+    ]
+    if any(isinstance(one, Pulse) for one in within.values()):
+        said.append("time: pulses are taken as 1")
+    for speed in np.linspace(0.0, edge, _TOLD_SPEEDS).tolist():
+        angles = np.radians(np.arange(len(WAYS)) * 360.0 / len(WAYS)).tolist()
+        values = [value(speed * math.cos(angle), speed * math.sin(angle)) for angle in angles]
+        around = ", ".join(f"{way} {one:.2f}" for way, one in zip(WAYS, values, strict=True))
+        if max(values) - min(values) < _ALIKE:
+            around = f"{values[0]:.2f}" + (" in all directions" if speed else "")
+        said.append(f"at {speed:g} mm/s: {around}")
+    speeds = np.linspace(-edge, edge, _SIGNAL_STEPS)
+    grid = np.array([[value(x, y) for x in speeds.tolist()] for y in speeds.tolist()], np.float32)
+    if request.kind == "csv":
+        rows = [
+            f"{x:.6g},{y:.6g},{one:.6g}\n"
+            for y, row in zip(speeds, grid, strict=True)
+            for x, one in zip(speeds, row, strict=True)
         ]
-        return self._file(outline_figure(self._scene, self._assets))
+        return "".join(["x_mm_s,y_mm_s,value\n", *rows]).encode(), said
+    from vbraille.pictures.drawings import drawing_bytes, map_figure
 
-    def map(self) -> Content:
-        self._check_room()
-        over = self._array(_ARRAY_TIME_S)
-        seed = self._request.seed
-        deflections = scenes.map_deflections(
-            self._scene, self._assets, self._per_mm, noise_seed=seed
-        )
-        array, self.said = self.said, [*self._shown(), f"vibration: as noise, seed {seed}"]
-        self.said += array
-        return self._content(deflections, over)
+    canvas = Canvas(width_mm=_SIGNAL_MM, height_mm=_SIGNAL_MM)
+    scenes.check_pixels(canvas, request.resolution, most=scenes.MOST_PLACED_PIXELS)
+    figure = map_figure(canvas, grid, rulers=(-edge, edge, edge, -edge), unit="mm/s")
+    told = "; ".join(said)
+    return drawing_bytes(figure, request.kind, request.resolution, loaded.title, told), said
 
-    def animation(self, frames: int) -> bytes:
-        maps = [scenes.grays(deflections) for _, deflections in self._maps(frames)]
-        return scenes.gif(maps, f"{self._title}. {self._told()}")
 
-    def sequence(self, frames: int) -> list[Content]:
-        contents = []
-        for time_s, deflections in self._maps(frames):
-            said = self.said
-            over = self._array(time_s)
-            contents.append(self._content(deflections, over))
-            self.said = said
-        return contents
+def _within(signals: Mapping[str, AnySignal], name: str) -> Iterator[tuple[str, AnySignal]]:
+    """Names and values of a signal and of those that it is made of."""
+    yield name, signals[name]
+    for one in made_of(signals[name]):
+        yield from _within(signals, one)
 
-    def _maps(self, frames: int) -> Iterator[tuple[float, NDArray[np.float32]]]:
-        """Times of a sequence, evenly over its period, with the map at each."""
-        period_s = scenes.slowest_s(self._scene)
-        if period_s is None:
-            raise InputError("nothing in the picture vibrates or moves; leave out --frames")
-        self._check_room(frames)
-        between = f"{1000 * period_s / frames:.4g} ms"
-        self.said = [
-            *self._shown(),
-            f"maps: {frames}, {between} apart, of one slowest swing of {1000 * period_s:.4g} ms",
-        ]
-        for number in range(frames):
-            time_s = period_s * number / frames
-            how = {"noise_seed": None, "time_s": time_s}
-            yield time_s, scenes.map_deflections(self._scene, self._assets, self._per_mm, **how)
 
-    def _check_room(self, maps: int = 1) -> None:
-        """Refuse maps of too many pixels before the first is made."""
-        request = self._request
-        most = scenes.MOST_PIXELS[request.kind]
-        if request.kind == "png" and (request.rulers or request.array):
-            most = scenes.MOST_PLACED_PIXELS
-        if request.kind == "png" and request.rulers and self._per_mm < _LEAST_RULERS_PER_MM:
-            raise InputError(
-                f"{setting('resolution')} is {self._per_mm:g}, too coarse for the numbers of "
-                f"rulers; give {_LEAST_RULERS_PER_MM:g} or more, or choose .svg or .pdf"
-            )
-        scenes.check_pixels(self._scene.canvas, self._per_mm, maps, most)
-
-    def _shown(self) -> list[str]:
-        columns, rows = scenes.check_pixels(self._scene.canvas, self._per_mm)
-        what = (
-            "a row for each pixel"
-            if self._request.kind == "csv"
-            else "rest white, full swing black"
-        )
-        pixels = f"pixels: {columns} × {rows}, {self._per_mm:g} a mm"
-        return [f"shown: a deflection map, {what}", pixels]
-
-    def _array(self, time_s: float) -> ArrayOnMap | None:
-        """Put the array on the scene as it is at a time, if it is wanted."""
-        if not self._request.array:
-            return None
-        from vbraille.pictures import drawings  # loads matplotlib
-
-        model = self._request.model
-        place = drawings.ArrayPlace(*self._request.array)
-        drawings.check_on_canvas(self._scene.canvas, model.display, place)
-        self.said = [
-            *self.said,
-            f"array: {model.title}, centre at {place.x_mm:g}, {place.y_mm:g} mm, turned by "
-            f"{place.angle_deg:g}°, {1000 * time_s:.4g} ms after the start",
-        ]
-        return drawings.show_array(self._scene, self._assets, model.display, place, time_s)
-
-    def _content(self, deflections: NDArray[np.float32], over: ArrayOnMap | None) -> Content:
-        """Make the file of one map, with what is over it and around it."""
-        kind, rulers = self._request.kind, self._request.rulers
-        if kind == "csv":
-            return scenes.map_csv(deflections, self._per_mm)
-        if kind == "png" and over is None and not rulers:
-            told = {"Title": self._title, "Description": self._told()}
-            return scenes.png(scenes.grays(deflections), self._per_mm, told)
-        from vbraille.pictures.drawings import map_figure
-
-        return self._file(map_figure(self._scene.canvas, deflections, over, axes=rulers))
-
-    def _file(self, figure: Any) -> bytes:
-        from vbraille.pictures.drawings import drawing_bytes
-
-        kind = self._request.kind
-        return drawing_bytes(figure, kind, self._per_mm, self._title, self._told())
-
-    def _told(self) -> str:
-        """Description in the picture's file: how it is drawn, and what it holds."""
-        return f"{'; '.join(self.said)}; {scene_text(self._scene)}"
+def _fastest(signal: Speed | Direction) -> float:
+    """Speed of the hand above which a signal changes no more, mm/s."""
+    if isinstance(signal, Speed):
+        return signal.below_mm_s + signal.transition_mm_s
+    return signal.below_mm_s + signal.slow_transition_mm_s

@@ -40,11 +40,6 @@ class PosedPath:
     theta_rad: NDArray[np.float64]
     velocity_mm_s: NDArray[np.float64]
 
-    def only(self, chosen: NDArray[np.bool_]) -> PosedPath:
-        """Make the path of chosen poses, bool[n]."""
-        arrays = (self.t_s, self.x_mm, self.y_mm, self.theta_rad, self.velocity_mm_s)
-        return PosedPath(*(array[chosen] for array in arrays))
-
 
 def path_of(hand: Hand | Recorded, canvas: Canvas, span_mm: float, rate_hz: float) -> PosedPath:
     """Return the poses of a hand on its way over a picture.

@@ -21,7 +21,7 @@ from vbraille.pictures.words import plain
 from vbraille.scene.patterns import Group, Moving
 from vbraille.scene.signals import Pulse, Switch, made_of, ordered
 from vbraille.scene.textures import SignalLevel
-from vbraille.scene.traversal import each, vibrations
+from vbraille.scene.traversal import each, vibrations, waves_of
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -122,7 +122,8 @@ def slowest_s(scene: Scene) -> float | None:
     swings = [swing.frequency_hz for one in scene.elements for swing in vibrations(one)]
     periods = [1.0 / frequency_hz for frequency_hz in swings]
     periods += [one.period_s for one in scene.signals.values() if isinstance(one, Pulse)]
-    periods += [1.0 / flow.flow_hz for part in each(*scene.elements) for flow in part.flows]
+    waves = (wave for part in each(*scene.elements) for _, wave in waves_of(part))
+    periods += [1.0 / wave.flow_hz for wave in waves if wave.speed]
     periods += [
         _passing_s(part)
         for part in each(*scene.elements)
@@ -133,7 +134,7 @@ def slowest_s(scene: Scene) -> float | None:
 
 def _passing_s(moving: Moving) -> float:
     """Time in which the longest wave of a texture goes by that moves as a whole, s."""
-    waves = [part.wave for part in each(moving.part) if part.wave is not None]
+    waves = (wave for part in each(moving.part) for _, wave in waves_of(part))
     lengths = [wave.length for wave in waves if wave.in_mm]
     return max(lengths, default=_UNKNOWN_MM) / math.hypot(*moving.velocity_mm_s)
 

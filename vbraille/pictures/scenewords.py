@@ -1,45 +1,23 @@
-"""Words for the picture of a scene: one thing a line, for people who do not see it."""
+"""Words for scenes: what each pattern is, when signals are 1, and what vibrates."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from vbraille.pictures.words import plain
-from vbraille.scene.patterns import (
-    Circle,
-    Dots,
-    Group,
-    Image,
-    ImageDots,
-    Label,
-    Moving,
-    PathShape,
-    Polygon,
-    StraightLine,
-    Tile,
-    Use,
-)
+from vbraille.scene.pattern import Pattern
 from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch
-from vbraille.scene.textures import (
-    AxialGrating,
-    LinearGrating,
-    RadialGrating,
-    SignalLevel,
-    Uniform,
-    UniformVibration,
-)
 from vbraille.scene.traversal import vibrations
-from vbraille.wording import count
 
 if TYPE_CHECKING:
-    from vbraille.scene.measures import Point
-    from vbraille.scene.patterns import AnyPattern
+    from collections.abc import Iterator
+
     from vbraille.scene.scene import Scene
     from vbraille.scene.signals import AnySignal
-    from vbraille.scene.strokes import Along, DotStyle, Dotting, MovingCue, Stroke, Vibration
 
-# How groups put their parts together, in words that need no formula.
 _TOGETHER = {
     "overwrite": "one on top of the other",
     "multiply": "each masking the others",
@@ -54,6 +32,10 @@ WAYS = (
     *("left", "left and up", "up", "right and up"),
 )
 _AT_REST = {"high": "1 at rest", "low": "0 at rest", "keep": "at rest what it was before"}
+# Fields that are said before all others, or are no part of what is felt.
+_UNSAID = ("id", "title", "description", "words", "sound")
+_UNITS = {"_mm_s": " mm/s", "_deg_s": "°/s", "_mm": " mm", "_deg": "°", "_hz": " Hz", "_s": " s"}
+_MOST_VALUES = 8  # of a list
 
 
 def scene_lines(scene: Scene) -> list[str]:
@@ -70,22 +52,12 @@ def scene_lines(scene: Scene) -> list[str]:
         lines.append(f"element {number}: {pattern_words(element)}")
     lines += [f"signal {plain(name)}: {signal_words(one)}" for name, one in scene.signals.items()]
     shaking = [
-        f"{plain(name_of(element)) or number}, {', '.join(dict.fromkeys(swings))}"
+        f"{plain(element.title or element.id) or number}, {', '.join(dict.fromkeys(swings))}"
         for number, element in enumerate(scene.elements, 1)
-        if (swings := [_swing_words(vibration) for vibration in vibrations(element)])
+        if (swings := [f"{one.frequency_hz:g} Hz" for one in vibrations(element)])
     ]
     lines += [f"vibrates: element {said}" for said in shaking] or ["vibrates: nothing"]
     return lines
-
-
-def scene_text(scene: Scene) -> str:
-    """Tell the same in one text, for the file of a picture."""
-    return "; ".join(scene_lines(scene))
-
-
-def name_of(pattern: AnyPattern) -> str:
-    """Tell what a pattern is called: by its title, else by its id, else not at all."""
-    return pattern.title or pattern.id
 
 
 def signal_words(signal: AnySignal) -> str:
@@ -126,153 +98,46 @@ def _way(angle_deg: float) -> str:
     return way if math.isclose(beside, 22.5) else f"at {turned:g}° ({way})"
 
 
-def _moving_by(speed: float, way: str, by: str, unit: str = "mm/s") -> str:
-    """Tell that something moves, and by which signal; nothing if it does not."""
-    if not speed:
-        return ""
-    by = f" times signal {plain(by)}" if by else ""
-    return f", moving {way} at {abs(speed):g} {unit}{by}"
+def pattern_words(pattern: Pattern) -> str:
+    """Tell in a line what a pattern is: its name, its kind, and what is not usual of it.
+
+    >>> from vbraille.scene.patterns import Circle
+    >>> from vbraille.scene.strokes import Stroke
+    >>> pattern_words(Circle(center_mm=(5, 9), radius_mm=4, stroke=Stroke(), title="sun"))
+    'sun, circle, stroke (width 4 mm), center 5, 9 mm, radius 4 mm'
+    """
+    kind = str(pattern.__struct_config__.tag).replace("-", " ")
+    name = plain(pattern.title or pattern.id)
+    return ", ".join([*([name] if name else []), kind, *_fields(pattern)])
 
 
-def pattern_words(pattern: AnyPattern) -> str:
-    """Tell in a line what a pattern is: its name, its kind and where it is."""
-    words = [_kind_words(pattern)]
-    if pattern.amplitude != 1.0:
-        words.append(f"amplitude {pattern.amplitude:g}")
-    if pattern.inverted:
-        words.append("inverted")
-    if pattern.vibration is not None:
-        words.append(f"vibrating: {_swing_words(pattern.vibration)}")
-    if pattern.factor:
-        words.append(f"times signal {plain(pattern.factor)}")
-    name = plain(name_of(pattern))
-    return (f"{name}, " if name else "") + ", ".join(words)
+def _fields(value: msgspec.Struct) -> Iterator[str]:
+    """Words for the first field of a pattern or of a part of one, and for all that are unusual."""
+    common = Pattern.__struct_fields__
+    fields = sorted(msgspec.structs.fields(value), key=lambda field: field.name in common)
+    for number, field in enumerate(fields):
+        one = getattr(value, field.name)
+        if one is None or field.name in _UNSAID or (number and one == field.default):
+            continue
+        yield _value_words(field.name, one)
 
 
-def _kind_words(pattern: AnyPattern) -> str:
-    match pattern:
-        case Uniform():
-            return f"uniform deflection {pattern.level:g}"
-        case SignalLevel():
-            return f"signal {plain(pattern.name)}"
-        case Moving():
-            return _moving_words(pattern)
-        case UniformVibration():
-            return f"uniform vibration at {pattern.frequency_hz:g} Hz"
-        case LinearGrating() | RadialGrating() | AxialGrating():
-            return _grating_words(pattern)
-        case Tile():
-            return (
-                f"tiles of {pattern.width_mm:g} × {pattern.height_mm:g} mm with "
-                f"{pattern_words(pattern.part)}"
-            )
-        case Image():
-            masked = "" if pattern.texture is None else f", of {pattern_words(pattern.texture)}"
-            return f"image {plain(pattern.file)} at {_place(pattern.place_mm)}{masked}"
-        case ImageDots():
-            return f"dots of image {plain(pattern.file)} at {_place(pattern.place_mm)}"
-        case Dots():
-            return f"{count(len(pattern.centers_mm), 'dot')} {_dot_words(pattern.dot)}"
-        case Label():
-            return f'braille "{plain(pattern.text)}" at {_place(pattern.place_mm)}'
-        case Group():
-            parts = "; ".join(map(pattern_words, pattern.parts))
-            together = _TOGETHER[pattern.operation]
-            if pattern.by is not None:
-                together = f"blended by {pattern_words(pattern.by)}"
-            return f"{len(pattern.parts)} parts, {together} ({parts})"
-        case Use():
-            return f"{plain(pattern.name)} again"
-        case StraightLine() | Circle() | Polygon() | PathShape():
-            return _shape_words(pattern)
-
-
-def _moving_words(moving: Moving) -> str:
-    """Tell how a texture moves, and what it is."""
-    right, down = moving.velocity_mm_s
-    moves = f"moving by ({right:g}, {down:g}) mm/s"
-    if moving.velocity_by:
-        moves += f" times signal {plain(moving.velocity_by)}"
-    if moving.array_at_mm is not None:
-        moves += ", not by the hand"
-    return f"{pattern_words(moving.part)}, {moves}"
-
-
-def _grating_words(grating: LinearGrating | RadialGrating | AxialGrating) -> str:
-    if isinstance(grating, AxialGrating):
-        words = f"spokes of {grating.ridge_deg:g}° with gaps of {grating.gap_deg:g}° around"
-        way = "against the clock" if grating.velocity_deg_s < 0 else "with the clock"
-        turns = _moving_by(grating.velocity_deg_s, way, grating.velocity_by, "°/s")
-        return f"{words} {_place(grating.center_mm)}{turns}"
-    lengths = f"ridges of {grating.ridge_mm:g} mm with gaps of {grating.gap_mm:g} mm"
-    if isinstance(grating, RadialGrating):
-        words = f"rings: {lengths} around {_place(grating.center_mm)}"
-        way = "inward" if grating.velocity_mm_s < 0 else "outward"
-    else:
-        words = f"{lengths}, the wave at {grating.travel_deg:g}°"
-        way = _way(grating.travel_deg + 180.0 * (grating.velocity_mm_s < 0))
-    words += _moving_by(grating.velocity_mm_s, way, grating.velocity_by)
-    return words if grating.distortion is None else f"{words}, frequency changed"
-
-
-def _shape_words(shape: StraightLine | Circle | Polygon | PathShape) -> str:
-    match shape:
-        case StraightLine():
-            words = f"line from {_place(shape.start_mm)} to {_place(shape.end_mm)}"
-        case Circle():
-            words = f"circle of radius {shape.radius_mm:g} mm around {_place(shape.center_mm)}"
-        case Polygon():
-            corners = ", ".join(f"({x:g}, {y:g})" for x, y in shape.vertices_mm[:8])
-            more = ", …" if len(shape.vertices_mm) > 8 else ""
-            words = f"polygon of {len(shape.vertices_mm)} vertices at {corners}{more} mm"
-        case PathShape():
-            kind = "closed " if shape.closed else ""
-            places = sum(map(len, shape.contours_mm))
-            words = f"{kind}path through {places} places from {_place(shape.contours_mm[0][0])}"
-    said = [words]
-    if shape.stroke is not None:
-        said.append(_stroke_words(shape.stroke))
-    if shape.dots is not None:
-        said.append(f"of dots {_dot_words(shape.dots.dot)}{_along_words(shape.dots)}")
-    if shape.cue is not None:
-        bands = f"under bands every {shape.cue.wave.length:g} mm"
-        said.append(f"{bands}{_along_words(shape.cue)}")
-    if isinstance(shape, Polygon) and shape.markers is not None:
-        said.append("with markers")
-    if not isinstance(shape, StraightLine) and shape.fill is not None:
-        said.append(f"filled with {pattern_words(shape.fill.texture)}")
-    return ", ".join(said)
-
-
-def _stroke_words(stroke: Stroke) -> str:
-    words = [f"stroke of {stroke.width_mm:g} mm"]
-    if stroke.outlined:
-        words.append("outlined")
-    if stroke.along is not None:
-        words.append(f"cut every {stroke.along.wave.length:g} mm{_along_words(stroke.along)}")
-    if stroke.across is not None:
-        words.append(f"with {stroke.across.cycles} cycles across")
-    if stroke.vibration is not None:
-        words.append(f"vibrating: {_swing_words(stroke.vibration)}")
-    return " ".join(words)
-
-
-def _along_words(moving: Along | Dotting | MovingCue) -> str:
-    """Tell how something moves along a path."""
-    way = "from its end to its beginning" if moving.velocity_mm_s < 0 else "along it"
-    return _moving_by(moving.velocity_mm_s, way, moving.velocity_by)
-
-
-def _dot_words(dot: DotStyle) -> str:
-    swing = "" if dot.vibration is None else f", vibrating: {_swing_words(dot.vibration)}"
-    return f"of radius {dot.radius_mm:g} mm{swing}"
-
-
-def _swing_words(vibration: Vibration) -> str:
-    share = "" if vibration.amplitude == 1.0 else f", amplitude {vibration.amplitude:g}"
-    part = "" if vibration.of == "high" else ", of what is down"
-    return f"{vibration.frequency_hz:g} Hz{share}{part}"
-
-
-def _place(point_mm: Point) -> str:
-    return f"({point_mm[0]:g}, {point_mm[1]:g}) mm"
+def _value_words(name: str, value: Any) -> str:
+    """Words for a value by the name of its field, which ends in its unit."""
+    end = next((end for end in _UNITS if name.endswith(end)), "")
+    label, unit = name.removesuffix(end).replace("_", " "), _UNITS.get(end, "")
+    if isinstance(value, bool):
+        return label if value else f"not {label}"
+    if isinstance(value, int | float):
+        return f"{label} {value:g}{unit}"
+    if isinstance(value, Pattern):
+        return f"{label} ({pattern_words(value)})"
+    if isinstance(value, msgspec.Struct):
+        return f"{label} ({', '.join(_fields(value))})"
+    if isinstance(value, tuple):
+        if all(isinstance(one, int | float) for one in value):
+            return f"{label} {', '.join(f'{one:g}' for one in value)}{unit}"
+        more = "; …" if len(value) > _MOST_VALUES else ""
+        inner = "; ".join(_value_words("", one).strip("() ") for one in value[:_MOST_VALUES])
+        return f"{len(value)} {label} ({inner}{more}){unit}"
+    return f"{label} {plain(str(value))}"

@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
     from vbraille.braille.geometry import Geometry
     from vbraille.layout import Line
-    from vbraille.render.braille.mappings import Mapping
     from vbraille.render.braille.models import Model
     from vbraille.render.braille.style import BrailleStyle, Tuning
 
@@ -89,15 +88,14 @@ def _spell(value: str | float) -> str:
     return f"{round(value, 6) + 0.0:.12g}"  # + 0.0, so that no "-0" is written
 
 
-def page(
-    lines: Sequence[Line],
-    model: Model,
-    *,
-    x_mm: float,
-    line_index: int = 0,
-    first: int = 1,
-) -> FigureTable:
-    """Dots of some lines where they stand on the surface, and the array upon one of them.
+_PAGE = (
+    "what", "line", "x_mm", "y_mm", "width_mm", "cell", "dot", "raised", "row", "column",
+    "deflection",
+)  # fmt: skip
+
+
+def page(lines: Sequence[Line], model: Model, *, x_mm: float, first: int = 1) -> FigureTable:
+    """Dots of some lines where they stand on the surface, and the array upon the first of them.
 
     Parameters
     ----------
@@ -107,8 +105,6 @@ def page(
         The display that shows them, and the style.
     x_mm
         Place of the array's centre.
-    line_index
-        The line that the array is on, from 0.
     first
         Number of the first line.
 
@@ -119,68 +115,42 @@ def page(
         ``line`` (its number), ``x_mm`` and ``y_mm`` (of the centre; y grows to the reader) and
         ``width_mm`` (of the dot, or the column pitch). Dots have ``cell`` (from 0), ``dot``
         (1 … 8) and ``raised`` (0 or 1); actuators have ``row``, ``column`` and ``deflection``.
-
-    Raises
-    ------
-    ValueError
-        If there is no line of that index.
     """
-    if not 0 <= line_index < len(lines):
-        raise ValueError(f"line index is {line_index}; there are {len(lines)} lines, from 0")
-    style, geometry = model.style, model.style.geometry
-    six = not any((line.masks > 0x3F).any() for line in lines)
-    parts = [
-        _dots(line, first + n, n * geometry.line_pitch_mm, geometry, six)
-        for n, line in enumerate(lines)
+    style, geometry, array = model.style, model.style.geometry, model.display
+    eight = any((line.masks > 0x3F).any() for line in lines)
+    places = list(PLACES.items())[: 8 if eight else 6]
+    none, middle = math.nan, geometry.dot_width_mm / 2
+    rows: list[tuple[Any, ...]] = [
+        (
+            "dot",
+            first + number,
+            cell * geometry.cell_pitch_mm + right * geometry.dot_spacing_mm + middle,
+            number * geometry.line_pitch_mm + down * geometry.row_spacing_mm,
+            geometry.dot_width_mm,
+            *(cell, dot, float(bool(mask & mask_of([dot]))), none, none, none),
+        )
+        for number, line in enumerate(lines)
+        for cell, mask in enumerate(line.masks.tolist())
+        for dot, (right, down) in places
     ]
-    line, array = lines[line_index], model.display
-    row, column = (grid.ravel() for grid in np.indices(array.shape))
-    frame = style.render(line.masks, array).path(np.array([x_mm]))[0]
-    top = line_index * geometry.line_pitch_mm + _first_row_mm(model)
-    parts.append(
-        {
-            "what": np.full(row.size, "actuator"),
-            "line": np.full(row.size, first + line_index),
-            "x_mm": x_mm - array.span_mm / 2 + array.column_offsets_mm()[column],
-            "y_mm": top + array.row_offsets_mm()[row],
-            "width_mm": np.full(row.size, array.column_pitch_mm),
-            "row": row,
-            "column": column,
-            "deflection": frame.ravel(),
-        }
-    )
-    names = dict.fromkeys(name for part in (parts[0], parts[-1]) for name in part)
+    frame = style.render(lines[0].masks, array).path(np.array([x_mm]))[0]
+    left, top = x_mm - array.span_mm / 2, _first_row_mm(model)
+    across, along = array.column_offsets_mm(), array.row_offsets_mm()
+    rows += [
+        (
+            *("actuator", first, left + across[column], top + along[row], array.column_pitch_mm),
+            *(none, none, none, row, column, deflection),
+        )
+        for (row, column), deflection in np.ndenumerate(frame)
+    ]
     columns = {
-        name: np.concatenate([p.get(name, np.full(len(p["what"]), np.nan)) for p in parts])
-        for name in names
+        name: np.array(values) for name, values in zip(_PAGE, zip(*rows, strict=True), strict=True)
     }
     title = (
-        f"{model.title}: line {first + line_index}, "
-        f"left column at {x_mm - array.span_mm / 2:g} mm, "
+        f"{model.title}: line {first}, left column at {left:g} mm, "
         f"{style.mapping.name}{tuning_words(style.tuning)}"
     )
     return FigureTable("page", title, columns)
-
-
-def _dots(
-    line: Line, number: int, top_mm: float, geometry: Geometry, six: bool
-) -> dict[str, NDArray]:
-    """Tell the places of the dots of a line whose first dot row is at `top_mm`."""
-    dots = list(PLACES)[: 6 if six else 8]
-    bits = [mask_of([dot]) for dot in dots]
-    right, dot_row = np.array([PLACES[dot] for dot in dots]).T
-    cell = np.repeat(np.arange(len(line)), len(dots))
-    centre = right * geometry.dot_spacing_mm + geometry.dot_width_mm / 2
-    return {
-        "what": np.full(cell.size, "dot"),
-        "line": np.full(cell.size, number),
-        "x_mm": cell * geometry.cell_pitch_mm + np.tile(centre, len(line)),
-        "y_mm": top_mm + np.tile(dot_row * geometry.row_spacing_mm, len(line)),
-        "width_mm": np.full(cell.size, geometry.dot_width_mm),
-        "cell": cell,
-        "dot": np.tile(dots, len(line)),
-        "raised": (line.masks[:, None] & bits != 0).astype(np.uint8).ravel(),
-    }
 
 
 def _first_row_mm(model: Model) -> float:
@@ -233,10 +203,7 @@ def profile(model: Model) -> FigureTable:
 
 
 def mapping(
-    style: BrailleStyle,
-    masks: NDArray[np.uint8] = LETTER,
-    methods: Sequence[Mapping] = (),
-    model: Model = STRESS2,
+    style: BrailleStyle, masks: NDArray[np.uint8] = LETTER, model: Model = STRESS2
 ) -> FigureTable:
     """Compute the deflection of each row of a display along a letter, for each mapping.
 
@@ -246,8 +213,6 @@ def mapping(
     ----------
     masks : uint8[cells]
         Dot masks of the letter, or of several.
-    methods
-        The mappings to compare; all that the display has rows for, if none is given.
     model
         The display.
 
@@ -258,7 +223,7 @@ def mapping(
     """
     # All columns sample the same function (eq. 3.1): one of them shows it.
     column = replace(model.display, columns=1)
-    methods = methods or [way for way in MAPPINGS.values() if way.rows <= column.rows]
+    methods = [way for way in MAPPINGS.values() if way.rows <= column.rows]
     geometry, tuning = style.geometry, style.tuning
     extent = geometry.extent_mm(len(masks))
     x = _grid(-1.0, extent + 1.0, _step_mm(geometry.dot_width_mm))

@@ -75,6 +75,10 @@ class Explored:
         """Say that something cannot be done, or there is no more of it."""
         self.say(sentence, Cue.LIMIT)
 
+    def refuse_beyond(self, said: str, *, up: bool) -> None:
+        """Say that a value is the largest there is, or the smallest."""
+        self.refuse(f"{said} is the {'maximum' if up else 'minimum'}")
+
     def ask(
         self, question: str, answer: Callable[[str], None], earlier: Sequence[str] = ()
     ) -> None:

@@ -35,7 +35,7 @@ def _turn(reader: Reader, name: str, steps: int) -> None:
     value = knob.value(reader.style)
     wanted = knob.turned(value, steps)
     if wanted == value:
-        reader.refuse(f"{knob.said(value)} is the {'most' if steps > 0 else 'least'}")
+        reader.refuse_beyond(knob.said(value), up=steps > 0)
     else:
         _tune(reader, knob.said(wanted), **{knob.field: wanted})
 
@@ -113,7 +113,7 @@ def _turn_band(reader: Reader, by: float) -> None:
     band = round(min(max(before + by, 0.0), 1.0), 2)
     said = f"band: {band:g} line pitches"
     if band == before and reader.rows:
-        reader.refuse(f"{said} is the {'most' if by > 0 else 'least'}")
+        reader.refuse_beyond(said, up=by > 0)
     else:
         _stray(reader, said, band=band)
 

@@ -93,7 +93,7 @@ class LiveOutput(Output):
                 self._view.tell(self._state(what))
             except Exception as error:  # a fault of what is shown beside never ends a reading
                 self._failed = True
-                self._say(f"live view: stands still after a fault: {type(error).__name__}: {error}")
+                self._say(f"live view: stopped by a fault: {type(error).__name__}: {error}")
         found = (self._key(what, asked) for asked in self._view.take())
         return [key for key in found if key]
 

@@ -40,12 +40,12 @@ def _go(reader: Reader, step: int, *, at_end: bool = False) -> None:
     reader.announce()
 
 
-@command("on along the line, then the next line", "right", also="pins:FWINRT")
+@command("pan right, then to the next line", "right", also="pins:FWINRT")
 def pan_right(reader: Reader) -> None:
     _pan(reader, 1)
 
 
-@command("back along the line, then the line before", "left", also="pins:FWINLT")
+@command("pan left, then to the previous line", "left", also="pins:FWINLT")
 def pan_left(reader: Reader) -> None:
     _pan(reader, -1)
 
@@ -130,7 +130,7 @@ def slower(reader: Reader) -> None:
 def _scroll(reader: Reader, cells_s: float) -> None:
     said = f"autoscroll: {cells_s:.1f} cells a second" if cells_s else "autoscroll: off"
     if cells_s == reader.scroll_cells_s:
-        reader.refuse(f"{said} is the {'most' if cells_s == max(_SPEEDS) else 'least'}")
+        reader.refuse_beyond(said, up=cells_s == max(_SPEEDS))
     else:
         reader.scroll(cells_s)
         reader.say(said)
@@ -205,7 +205,7 @@ def number_bookmark(reader: Reader) -> None:
 def _set(reader: Reader, name: str) -> None:
     names = reader.kept.bookmarks
     name = name or str(next(n for n in range(1, len(names) + 2) if str(n) not in names))
-    reader.kept.set_bookmark(name, reader.place, around(reader.line))
+    reader.kept.mark(name, reader.place, around(reader.line))
     reader.say(f"bookmark {name}: set at {reader.named()}")
 
 
@@ -217,7 +217,7 @@ def go_to_bookmark(reader: Reader) -> None:
 @command("delete a bookmark", "delete X", "X")
 def delete_bookmark(reader: Reader) -> None:
     def remove(name: str, _place: int) -> None:
-        reader.kept.remove_bookmark(name)
+        reader.kept.mark(name)
         reader.say(f"bookmark {name}: deleted")
 
     _choose(reader, "delete bookmark", remove)

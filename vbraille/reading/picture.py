@@ -226,7 +226,7 @@ class Picture(Explored):
         if others:
             self._zoom_to(min(others, key=lambda zoom: abs(zoom - now)))
         else:
-            self.refuse(f"zoom: {now:g} is the {'most' if step > 0 else 'least'}")
+            self.refuse_beyond(f"zoom: {now:g}", up=step > 0)
 
     def _zoom_to(self, zoom: float) -> None:
         try:
@@ -239,9 +239,8 @@ class Picture(Explored):
         self._y_mm *= zoom / self.aperture.zoom
         self._goal = None
         self._take(*made)
-        zoomed = self.aperture.zoomed(zoom, at_mm)
-        whole = zoom == 1.0 and zoomed.is_whole
-        self._look_from(Aperture(self.aperture.reach_mm) if whole else zoomed)
+        whole = Aperture(self.aperture.reach_mm)
+        self._look_from(whole if zoom == 1.0 else self.aperture.zoomed(zoom, at_mm))
 
     # Where the hand is
 
@@ -330,7 +329,7 @@ class Picture(Explored):
         """Go back to the text."""
         self.done = True
 
-    @_command("say the way to an element no more", "escape")
+    @_command("stop saying the way to an element", "escape")
     def cancel(self) -> None:
         """Say the way no more; without one, leave a figure."""
         if self._goal is not None:
@@ -486,17 +485,17 @@ class Picture(Explored):
         title = next((one.title for one in switches if one.title), f"switch {key}")
         self.say(f"{title}: {name}")
 
-    @_command("nearer, about the finger", "+ =", also="button:6", first=True, steers=True)
+    @_command("zoom in, about the finger", "+ =", also="button:6", first=True, steers=True)
     def zoom_in(self) -> None:
         """Have the picture nearer."""
         self._zoom(1)
 
-    @_command("farther, about the finger", "-", also="button:7", steers=True)
+    @_command("zoom out, about the finger", "-", also="button:7", steers=True)
     def zoom_out(self) -> None:
         """Have the picture farther."""
         self._zoom(-1)
 
-    @_command("the whole picture again, as written", "0", also="button:8", steers=True)
+    @_command("show the whole picture, at zoom 1", "0", also="button:8", steers=True)
     def whole(self) -> None:
         """Show the whole picture again."""
         if self.aperture.zoom == 1.0:
@@ -518,7 +517,7 @@ class Picture(Explored):
         """Show the picture with another share of the actuators' swing."""
         contrast = round(min(max(self._contrast + by, _CONTRAST_STEP), 1.0), 2)
         if contrast == self._contrast:
-            self.refuse(f"contrast: {contrast:g} is the {'most' if by > 0 else 'least'}")
+            self.refuse_beyond(f"contrast: {contrast:g}", up=by > 0)
             return
         self._contrast = contrast
         self._take(*self._made(self.loaded, self.aperture.zoom))
@@ -549,7 +548,7 @@ def _add_ways() -> None:
         "down": (0, 1, "}", 12), "up": (0, -1, "{", 11),
     }  # fmt: skip
     for name, (right, down, bracket, button) in ways.items():
-        _command(f"part of the picture farther {name}", f"ctrl-{name} {bracket}",
+        _command(f"pan the picture {name}", f"ctrl-{name} {bracket}",
                  name=f"pan-{name}", also=f"button:{button}", steers=True)(
             partial(Picture.pan, right=_PAN * right, down=_PAN * down)
         )  # fmt: skip

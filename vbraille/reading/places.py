@@ -79,7 +79,6 @@ class ListedBook(NamedTuple):
     path: Path
     title: str
     share: float
-    options: dict[str, Any]
 
 
 class KeptBook:
@@ -120,11 +119,8 @@ class KeptBook:
             return 0
         place = nearest(source, self._around, self._place, self._share)
         exact = self._around.strip() and source.text.startswith(self._around, place)
-        say(
-            "the book has changed; this is your place"
-            if exact
-            else "your exact place is gone; this is close to it"
-        )
+        gone = "your exact place is gone; this is close to it"
+        say("the book has changed; this is your place" if exact else gone)
         return place
 
     def keep(self, place: int, share: float, words: str) -> None:
@@ -139,17 +135,14 @@ class KeptBook:
     @property
     def bookmarks(self) -> dict[str, int]:
         """Places of the bookmarks by their names, in the order of the book."""
-        found = {name: place for name, (place, _) in self._marks.items()}
-        return dict(sorted(found.items(), key=lambda each: each[1]))
+        marks = sorted(self._marks.items(), key=lambda mark: mark[1][0])
+        return {name: place for name, (place, _) in marks}
 
-    def set_bookmark(self, name: str, place: int, words: str) -> None:
-        """Set a bookmark, in place of one with the same name."""
-        self._marks[name] = [place, words]
-        self._write(bookmarks=json.dumps(self._marks))
-
-    def remove_bookmark(self, name: str) -> None:
-        """Remove a bookmark."""
-        del self._marks[name]
+    def mark(self, name: str, place: int | None = None, words: str = "") -> None:
+        """Set a bookmark, in place of one with the same name; remove it without a place."""
+        self._marks.pop(name, None)
+        if place is not None:
+            self._marks[name] = [place, words]
         self._write(bookmarks=json.dumps(self._marks))
 
     def _write(self, **values: Any) -> None:
@@ -200,15 +193,12 @@ class Places:
 
     def listed(self) -> list[ListedBook]:
         """All books, the one that was read last first."""
+        columns = "digest, path, title, share"
         return [
-            ListedBook(
-                row["digest"],
-                Path(os.fsdecode(row["path"])),
-                row["title"],
-                row["share"],
-                json.loads(row["options"]),
+            ListedBook(digest, Path(os.fsdecode(path)), title, share)
+            for digest, path, title, share in self._db.execute(
+                f"SELECT {columns} FROM books ORDER BY read_s DESC"
             )
-            for row in self._db.execute("SELECT * FROM books ORDER BY read_s DESC")
         ]
 
     def numbered(self, number: int) -> ListedBook:

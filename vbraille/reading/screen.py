@@ -177,11 +177,11 @@ class Screen(Surface):
 _ASKED: Final = {
     "LNDN": ("next line", "n down"),
     "LNUP": ("previous line", "p up"),
-    "FWINRT": ("on along the line, then the next line", "right"),
+    "FWINRT": ("pan right, then to the next line", "right"),
     "TOP": ("first line of the screen", "< ctrl-home"),
     "HOME": ("to the cursor", "."),
     "CSRTRK": ("follow the cursor, or stay", "C"),
-    "FWINLT": ("back along the line, then the line before", "left"),
+    "FWINLT": ("pan left, then to the previous line", "left"),
     "LNBEG": ("start of the line", "home"),
     "LNEND": ("end of the line", "end"),
     "BOT": ("last line of the screen", "> ctrl-end"),

@@ -3,26 +3,20 @@
 Knob after knob, of two values the reader chooses the one that is nearer to what is liked. Which two
 come next, and what is liked, follow from the choices so far by QUEST+ (`vbraille.adaptive`): a
 reader who is not sure, or errs, is asked again about what is in doubt. All follows from the list of
-choices, which is kept until the course is done.
+choices.
 """
 
 from __future__ import annotations
 
-import json
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 
 from vbraille.adaptive.observer import Grid, Quest, nearer
-from vbraille.errors import InputError
-from vbraille.files import write_file
 from vbraille.knobs import KNOBS
 from vbraille.reading.commands import Where, both_ways, command
 from vbraille.reading.explored import Explored
-from vbraille.wording import setting
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from vbraille.knobs import Knob
     from vbraille.reading.reader import Reader
     from vbraille.render import BrailleStyle
@@ -138,48 +132,24 @@ class Tuning(Explored):
     ----------
     reader
         Reader of the practice text.
-    path
-        Path of the file that keeps the choices until the course is done.
     profile
         Name of the profile that the course is for.
-    again
-        Whether to begin anew, whatever is kept.
-
-    Raises
-    ------
-    InputError
-        If the choices that are kept are not of this course.
     """
 
     where = Where.TUNING
     doing = "tuning"
 
-    def __init__(self, reader: Reader, path: Path, profile: str, *, again: bool) -> None:
+    def __init__(self, reader: Reader, profile: str) -> None:
         super().__init__(reader.device, reader.outputs)
-        self.reader, self._path, self._profile = reader, path, profile
+        self.reader, self._profile = reader, profile
         self._start, self._which = reader.style, 1
-        self.course = Course(self._start, [] if again else self._kept())
+        self.course = Course(self._start, [])
         # What the loop asks of a reader:
         self.follow, self.steer = reader.follow, reader.steer
-
-    def _kept(self) -> list[int]:
-        if not self._path.exists():
-            return []
-        try:
-            choices = json.loads(self._path.read_text())["choices"]
-            if len(choices) > Course.total or not {1, 2}.issuperset(choices):
-                raise ValueError
-        except (OSError, ValueError, KeyError, TypeError):
-            raise InputError(
-                f"{self._path}: the kept choices are damaged; start anew with {setting('again')}"
-            ) from None
-        return choices
 
     def begin(self) -> None:
         """Say what the course is for, and ask for the first choice that is left."""
         self.say(f"profile: {self._profile}")
-        if self.course.choices:
-            self.say(f"going on: {len(self.course.choices)} choices made")
         self._ask()
 
     def _ask(self) -> None:
@@ -200,17 +170,10 @@ class Tuning(Explored):
     def _choose(self, choices: list[int]) -> None:
         """Take a choice, or take one back, and ask the next."""
         settled = len(self.course.found)
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        kept = json.dumps({"profile": self._profile, "choices": choices}).encode()
-        write_file(self._path, kept, replace=True, durable=True)
         self.course = Course(self._start, choices)
         for sentence in self.course.found[settled:]:
             self.say(sentence)
         self._ask()
-
-    def forget(self) -> None:
-        """Delete the choices, once their outcome is saved."""
-        self._path.unlink(missing_ok=True)
 
     @_command("feel the other one", "space", also="button:3", first=True)
     def other(self) -> None:

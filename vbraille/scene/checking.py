@@ -23,6 +23,7 @@ from vbraille.scene.traversal import (
     placed,
     signals_of,
     vibrations,
+    waves_of,
 )
 from vbraille.scene.zooming import is_there
 from vbraille.wording import count
@@ -53,15 +54,15 @@ _MOST_COMPARED = 200
 # When a wave is felt badly (8.6 and 9.7), and what is said of it then.
 _WAVES = (
     (
-        lambda wave: wave.in_mm and wave.length < 2.0,
+        lambda what, wave: "grating" in what and wave.in_mm and wave.length < 2.0,
         "of {0.length:g} mm, which is felt as noise; 2 to 15 mm are felt best",
     ),
     (
-        lambda wave: wave.in_mm and wave.length > 15.0,
+        lambda what, wave: "grating" in what and wave.in_mm and wave.length > 15.0,
         "of {0.length:g} mm, which is felt weakly; 2 to 15 mm are felt best",
     ),
     (
-        lambda wave: wave.flow_hz > 5.0,
+        lambda _, wave: wave.flow_hz > 5.0,
         "that moves by {0.flow_hz:.3g} waves a second; 1 to 5 are felt best",
     ),
 )
@@ -154,7 +155,7 @@ def check_scene(opened: OpenedScene, known: Boxes) -> SceneReport:
         for number, (wrote, shown) in enumerate(zip(written.elements, scene.elements, strict=True))
     )
     return SceneReport(
-        kinds=dict(sorted(counts.items(), key=lambda item: (-item[1], item[0]))),
+        kinds=dict(counts.most_common()),
         elements=elements,
         textures=_texture_count(scene),
         advice=(*_advice(scene, elements, known), *_signal_advice(opened)),
@@ -252,20 +253,14 @@ def _felt_advice(element: AnyPattern) -> Iterator[str]:
                 )
         for what, wave in _waves(pattern):
             for is_bad, sentence in _WAVES:
-                if is_bad(wave):
+                if is_bad(what, wave):
                     yield f"has {what} {sentence.format(wave)}"
 
 
 def _waves(pattern: AnyPattern) -> Iterator[tuple[str, RidgeWave]]:
-    """Waves of a pattern, with what they are; cues and dots are as long as is wished."""
-    if pattern.wave is not None:
-        yield f"a grating{' along a stroke' if isinstance(pattern, Shape) else ''}", pattern.wave
-    if isinstance(pattern, Shape):
-        if pattern.cue is not None:
-            yield "a cue", pattern.cue.wave._replace(in_mm=False)
-        if pattern.dots is not None:
-            yield "a row of dots", pattern.dots.wave._replace(in_mm=False)
-    elif isinstance(pattern, Moving):
+    """Waves of a pattern, with what they are; of one that moves as a whole as it moves."""
+    yield from waves_of(pattern)
+    if isinstance(pattern, Moving):
         x_mm_s, y_mm_s = pattern.velocity_mm_s
         for part in each(pattern.part):
             if isinstance(part, LinearGrating):

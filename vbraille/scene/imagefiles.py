@@ -128,43 +128,29 @@ def _intensities(
     image: Pillow.Image, channel: Channel, shape: tuple[int, int], path: Path
 ) -> NDArray[np.uint16]:
     import numpy as np
+    from PIL import Image
 
-    if image.mode == "I" or image.mode.startswith("I;16"):
-        if channel == "alpha":
-            raise _no_alpha(path)
-        return _deep(image, shape)
-    if image.mode in ("RGBA", "LA", "PA") or "transparency" in image.info:
+    is_deep = image.mode == "I" or image.mode.startswith("I;16")
+    has_alpha = image.mode in ("RGBA", "LA", "PA") or "transparency" in image.info
+    if channel == "alpha" and (is_deep or not has_alpha):
+        raise InputError(f'{path} has no alpha channel; write channel = "gray"')
+    if is_deep:  # Pillow averages these as floating point alone
+        values = np.asarray(image).astype(np.float32)
+        clear = image.info.get("transparency")
+        if isinstance(clear, int):
+            values[values == clear] = 0.0
+        averaged = np.asarray(_smaller(Image.fromarray(values), shape))
+        return np.clip(np.rint(averaged), 0, WHOLE).astype(np.uint16)
+    if has_alpha:
         # Colours times alpha, so that averaging is right at transparent edges.
         image = image if image.mode == "RGBA" else image.convert("RGBA")
-        image = _smaller(image.convert("RGBa"), shape)
-        image = image.getchannel(3) if channel == "alpha" else _luminance(image)
-    elif channel == "alpha":
-        raise _no_alpha(path)
+        *colors, alpha = _smaller(image.convert("RGBa"), shape).split()
+        image = alpha if channel == "alpha" else Image.merge("RGB", colors).convert("L")
     else:
-        if image.mode not in ("L", "RGB"):
-            image = image.convert("L" if image.mode == "1" else "RGB")
+        if image.mode not in ("L", "RGB", "1"):
+            image = image.convert("RGB")
         image = _smaller(image.convert("L"), shape)
     return np.asarray(image).astype(np.uint16) * (WHOLE // 255)
-
-
-def _deep(image: Pillow.Image, shape: tuple[int, int]) -> NDArray[np.uint16]:
-    """Intensities of an image of 16 bits, which Pillow averages as floating point alone."""
-    import numpy as np
-    from PIL import Image
-
-    values = np.asarray(image).astype(np.float32)
-    clear = image.info.get("transparency")
-    if isinstance(clear, int):
-        values[values == clear] = 0.0
-    averaged = np.asarray(_smaller(Image.fromarray(values), shape))
-    return np.clip(np.rint(averaged), 0, WHOLE).astype(np.uint16)
-
-
-def _luminance(premultiplied: Pillow.Image) -> Pillow.Image:
-    """Luminance of an image whose colours are laid over black already."""
-    from PIL import Image
-
-    return Image.merge("RGB", premultiplied.split()[:3]).convert("L")
 
 
 def _smaller(image: Pillow.Image, shape: tuple[int, int]) -> Pillow.Image:
@@ -172,7 +158,3 @@ def _smaller(image: Pillow.Image, shape: tuple[int, int]) -> Pillow.Image:
     from PIL import Image
 
     return image if image.size == shape else image.resize(shape, Image.Resampling.BOX)
-
-
-def _no_alpha(path: Path) -> InputError:
-    return InputError(f'{path} has no alpha channel; write channel = "gray"')

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import math
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError, needing_extras
-from vbraille.scene.bitmap import WHOLE, Bitmap
+from vbraille.scene.bitmap import WHOLE, Bitmap, pixel_size_mm
 from vbraille.scene.imagefiles import intensities_of
 from vbraille.scene.patterns import Image
 from vbraille.scene.traversal import each
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-
-    import numpy as np
-    from numpy.typing import NDArray
 
     from vbraille.scene.patterns import ImageDots
     from vbraille.scene.scene import Scene
@@ -31,16 +28,6 @@ _WIDEST_BLUR = 5.0  # pixels
 _BLUR_REACH = 4.0  # standard deviations
 MOST_PIXELS = 16_000_000  # of a bitmap; larger images have fewer per mm
 MOST_TOGETHER = 64_000_000  # of a scene's bitmaps
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Laid:
-    """Intensities of an image, the size of it, and how far the bitmap goes beyond that."""
-
-    intensities: NDArray[np.uint16]
-    width_mm: float
-    height_mm: float
-    margins_mm: tuple[float, float] = (0.0, 0.0)
 
 
 def load_bitmaps(scene: Scene, folder: Path, places: Sequence[str] = ()) -> dict[Image, Bitmap]:
@@ -72,35 +59,31 @@ def load_bitmaps(scene: Scene, folder: Path, places: Sequence[str] = ()) -> dict
         images have more than 64 million pixels together.
     """
     bitmaps: dict[Image, Bitmap] = {}
-    kept: dict[tuple[object, ...], _Laid] = {}
+    kept: dict[tuple[object, ...], Bitmap] = {}
     for number, element in enumerate(scene.elements):
-        with _placing(places[number] if number < len(places) else ""):
-            for image in each(element):
-                if isinstance(image, Image) and image not in bitmaps:
-                    bitmaps[image] = _loaded(image, folder, kept)
-    return bitmaps
-
-
-def _loaded(image: Image, folder: Path, kept: dict[tuple[object, ...], _Laid]) -> Bitmap:
-    """Bitmap of an image, whose pixels are read if they were not kept before."""
-    source = _source(image)
-    if source not in kept:
-        kept[source] = _laid(image, folder)
-        if sum(laid.intensities.size for laid in kept.values()) > MOST_TOGETHER:
-            raise InputError(
-                f"{named(image)}: the images of the scene have more than "
-                f"{MOST_TOGETHER // 1_000_000} million pixels together; make some smaller"
+        place = f"{places[number]}: " if places and places[number] else ""
+        for image in each(element):
+            if not isinstance(image, Image) or image in bitmaps:
+                continue
+            outside = image.outside if image.blur_mm else 0.0
+            looks = (image.channel, image.inverted_source, image.blur_mm, outside, image.nearest)
+            source = (image.file, image.width_mm, image.height_mm, *looks)
+            try:
+                if source not in kept:
+                    kept[source] = _laid(image, folder)
+                if sum(one.intensities.size for one in kept.values()) > MOST_TOGETHER:
+                    raise InputError(
+                        f"{named(image)}: the images of the scene have more than "
+                        f"{MOST_TOGETHER // 1_000_000} million pixels together; make some smaller"
+                    )
+            except InputError as error:
+                raise InputError(f"{place}{error}") from None
+            laid = kept[source]
+            left, top = (a + b for a, b in zip(image.place_mm, laid.place_mm, strict=True))
+            bitmaps[image] = replace(
+                laid, place_mm=(left, top), outside=image.outside, nearest=image.nearest
             )
-    return _bitmap(image, kept[source])
-
-
-@contextmanager
-def _placing(place: str) -> Iterator[None]:
-    """Put a place, if it is known, before what is refused there."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(f"{place}: {error}") if place else error from None
+    return bitmaps
 
 
 def named(image: Image | ImageDots) -> str:
@@ -159,15 +142,8 @@ def shape_of(width_mm: float, height_mm: float, per_mm: float) -> tuple[int, int
     return max(int(width_mm * per_mm), 1), max(int(height_mm * per_mm), 1)
 
 
-def _source(image: Image) -> tuple[object, ...]:
-    """All that the intensities of an image follow from."""
-    outside = image.outside if image.blur_mm else 0.0
-    looks = (image.channel, image.inverted_source, image.blur_mm, outside, image.nearest)
-    return (image.file, image.width_mm, image.height_mm, *looks)
-
-
-def _laid(image: Image, folder: Path) -> _Laid:
-    """Read an image, and blur it."""
+def _laid(image: Image, folder: Path) -> Bitmap:
+    """Bitmap of an image at the origin, which its blur makes larger."""
     size = (0.0, 0.0)
     # Whose own pixels count has all of them.
     per_mm = math.inf if image.nearest else MOST_PER_MM
@@ -189,20 +165,19 @@ def _laid(image: Image, folder: Path) -> _Laid:
         intensities = intensities_of(Path(folder, image.file), image.channel, shape)
     if image.inverted_source:
         intensities = WHOLE - intensities
-    laid = _Laid(intensities, *size)
+    laid = Bitmap(intensities, (0.0, 0.0), *size)
     if not image.blur_mm:
         return laid
     return _blurred_pixels(laid, image) if image.nearest else _blurred(laid, image)
 
 
-def _blurred(laid: _Laid, image: Image) -> _Laid:
+def _blurred(laid: Bitmap, image: Image) -> Bitmap:
     """Blur an image, which then reaches farther."""
     import numpy as np
 
     with needing_extras():
         from scipy.ndimage import gaussian_filter
-    rows, columns = laid.intensities.shape
-    pixel_mm = laid.width_mm / columns, laid.height_mm / rows
+    pixel_mm = pixel_size_mm(laid)
     sigmas = [image.blur_mm / of for of in pixel_mm]
     wide, high = (math.ceil(_BLUR_REACH * sigma) for sigma in sigmas)
     outside = round(image.outside * WHOLE)
@@ -215,10 +190,12 @@ def _blurred(laid: _Laid, image: Image) -> _Laid:
         truncate=_BLUR_REACH,
     )
     whole = np.clip(np.rint(blurred), 0, WHOLE).astype(np.uint16)
-    return _Laid(whole, laid.width_mm, laid.height_mm, (wide * pixel_mm[0], high * pixel_mm[1]))
+    beside, above = wide * pixel_mm[0], high * pixel_mm[1]
+    size = laid.width_mm + 2 * beside, laid.height_mm + 2 * above
+    return Bitmap(whole, (-beside, -above), *size)
 
 
-def _blurred_pixels(laid: _Laid, image: Image) -> _Laid:
+def _blurred_pixels(laid: Bitmap, image: Image) -> Bitmap:
     """Blur the pixels of an image as ImageMagick does, by whose values OpenLatero shows it.
 
     A Gauss that ends at twice its deviation is sampled at thirds of a pixel, along and then down,
@@ -229,9 +206,7 @@ def _blurred_pixels(laid: _Laid, image: Image) -> _Laid:
 
     with needing_extras():
         from scipy.ndimage import convolve1d
-    rows, columns = laid.intensities.shape
-    pixel_mm = math.sqrt(laid.width_mm / columns * laid.height_mm / rows)
-    sigma = round(image.blur_mm / pixel_mm, 3)
+    sigma = round(image.blur_mm / math.sqrt(math.prod(pixel_size_mm(laid))), 3)
     width = 2 * math.ceil(2 * sigma) + 1
     thirds = np.arange(3 * width) - (3 * width - 1) / 2
     weights = np.exp(-0.5 * (thirds / (3 * sigma)) ** 2).reshape(width, 3).sum(axis=1)
@@ -241,17 +216,4 @@ def _blurred_pixels(laid: _Laid, image: Image) -> _Laid:
         made = np.rint(convolve1d(made, weights, axis=axis, mode="nearest"))
     step = WHOLE // 255
     levels = np.ceil(made / step) if image.channel == "alpha" else np.floor(made / step)
-    return _Laid((levels * step).astype(np.uint16), laid.width_mm, laid.height_mm)
-
-
-def _bitmap(image: Image, laid: _Laid) -> Bitmap:
-    beside, above = laid.margins_mm
-    left, top = image.place_mm
-    return Bitmap(
-        intensities=laid.intensities,
-        place_mm=(left - beside, top - above),
-        width_mm=laid.width_mm + 2 * beside,
-        height_mm=laid.height_mm + 2 * above,
-        outside=image.outside,
-        nearest=image.nearest,
-    )
+    return replace(laid, intensities=(levels * step).astype(np.uint16))

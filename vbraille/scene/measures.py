@@ -81,8 +81,11 @@ def _check_of(hint: Any) -> _Check | None:
         return check
 
     def check_each(what: str, values: Any) -> None:
+        is_list = Ellipsis in inner
+        if values is not None and not is_list and len(values) != len(inner):
+            raise ValueError(f"{what} has {len(values)} numbers; give {len(inner)}")
         for number, value in enumerate(values or ()):
-            one = f"number {number + 1}" if Ellipsis in inner else "xy"[number]
+            one = f"number {number + 1}" if is_list else "xy"[number]
             check(f"{what}, {one}", value)
 
     return check_each

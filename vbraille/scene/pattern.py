@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from vbraille.scene.measures import Measured, RidgeWave, Share, check_file, limits
+from vbraille.scene.measures import Measured, Share, check_file, limits
 from vbraille.scene.strokes import Vibration
 
 Zoom = Annotated[float, limits(0.5, 16.0)]
@@ -66,13 +66,3 @@ class Pattern(Measured, frozen=True, kw_only=True, tag_field="kind"):
                 f"zoom_to is {ends:g}, and zoom_from {begins:g}, so that it is never there; "
                 "give zoom_to a larger number"
             )
-
-    @property
-    def wave(self) -> RidgeWave | None:
-        """Length and speed of ridges and gaps of its own; None if it has none."""
-        return None
-
-    @property
-    def flows(self) -> tuple[RidgeWave, ...]:
-        """All that flows in it by itself, as waves."""
-        return () if self.wave is None or not self.wave.speed else (self.wave,)

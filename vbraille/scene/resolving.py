@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 from msgspec.structs import replace
 
@@ -44,9 +44,6 @@ _MOST = {
     "points; use fewer": MOST_POINTS,
 }
 _TOO_DEEP = f"nests more than {MOST_DEPTH} deep by what it uses; make it flatter"
-# Keys that a use can have without a group around what it names.
-_CALLED: tuple[str, ...] = ("id", "title", "description")
-_NAMELESS: dict[str, str] = dict.fromkeys(_CALLED, "")
 
 
 def resolve(scene: Scene, folder: Path | None = None, locations: Locations | None = None) -> Scene:
@@ -194,10 +191,11 @@ class _Resolving:
         own = {key: getattr(use, key) for key in Pattern.__struct_fields__}
         for key in ("title", "description", "words", "sound"):
             own[key] = own[key] or getattr(pattern, key)
-        called: dict[Any, Any] = {key: own[key] for key in _CALLED}
+        called = {"id": use.id, "title": own["title"], "description": own["description"]}
         if replace(use, **called) == Use(name=use.name, move_mm=use.move_mm, **called):
-            return _called(pattern, called)
-        return Group(operation="maximum", parts=(_called(pattern, _NAMELESS),), **own)
+            return replace(pattern, **called)
+        inner = replace(pattern, id="", title="", description="")
+        return Group(operation="maximum", parts=(inner,), **own)
 
     def _body(self, name: str, steps: Steps, depth: int) -> _Body:
         """Return what a name stands for, made once; it is to stand at a depth."""
@@ -209,7 +207,10 @@ class _Resolving:
                 self._fail(steps, f"uses uses more than {MOST_DEPTH} deep; make it flatter")
             there, written = self._of_name(name, steps)
             self._open.append(name)
-            pattern = mapped(self._resolved(written, there, depth), _nameless)
+            pattern = mapped(
+                self._resolved(written, there, depth),
+                lambda one: replace(one, id="") if one.id else one,  # each is of one thing
+            )
             self._open.pop()
             amounts: Counter[str] = Counter()
             for one in each(pattern):
@@ -243,15 +244,3 @@ def _amounts(pattern: AnyPattern) -> dict[str, int]:
 
 def _depth(pattern: AnyPattern) -> int:
     return 1 + max(map(_depth, children(pattern)), default=0)
-
-
-def _nameless(pattern: AnyPattern) -> AnyPattern:
-    """Pattern without its id, since each is the name of one thing."""
-    return _called(pattern, {"id": ""})
-
-
-def _called(pattern: AnyPattern, called: Mapping[str, str]) -> AnyPattern:
-    """Pattern with another id, title or description; made anew, and checked, only if need be."""
-    if all(getattr(pattern, key) == text for key, text in called.items()):
-        return pattern
-    return replace(pattern, **called)

@@ -15,7 +15,7 @@ from vbraille.scene.textures import SignalLevel, UniformVibration
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from vbraille.scene.measures import Point
+    from vbraille.scene.measures import Point, RidgeWave
     from vbraille.scene.patterns import AnyPattern
     from vbraille.toml import Table
 
@@ -28,6 +28,12 @@ Steps = tuple[str | int, ...]
 _INNER = ("parts", "by", "part", "texture", "fill")
 _DRAWN = ("stroke", "along", "dots", "dot", "cue", "markers")
 _DRIVEN = ("factor", "velocity_by")
+_WAVES: dict[Steps, str] = {
+    (): "a grating",
+    ("along",): "a grating along a stroke",
+    ("cue",): "a cue",
+    ("dots",): "a row of dots",
+}
 ONE = ("start_mm", "end_mm", "center_mm", "origin_mm", "place_mm", "move_mm", "array_at_mm")
 SEVERAL = ("vertices_mm", "centers_mm", "contours_mm")
 
@@ -110,6 +116,12 @@ def drawn_with(table: Table, steps: Steps = ()) -> Iterator[tuple[Steps, Table]]
         inner = getattr(table, key, None)
         if inner is not None:
             yield from drawn_with(inner, (*steps, key))
+
+
+def waves_of(pattern: AnyPattern) -> list[tuple[str, RidgeWave]]:
+    """Ridges and gaps of what a pattern draws itself, with what they are."""
+    waves = [(steps, getattr(table, "wave", None)) for steps, table in drawn_with(pattern)]
+    return [(_WAVES[steps[-1:]], wave) for steps, wave in waves if wave is not None]
 
 
 def drawn_vibrations(pattern: AnyPattern) -> list[Vibration]:

@@ -67,7 +67,7 @@ def test_it_reads_shows_and_takes_leave(latero):
         assert device.acknowledges
         assert "offsets=4452,4294960000,120034" in device.particulars.protocol
         assert "controller 1.0, I/O interface 1.0" in device.particulars.protocol
-        watching = device.watchdog.process_id
+        watching = device.watchdog._process.pid
     assert latero.board.at_rest
     assert not latero.board.powered
     with pytest.raises(ProcessLookupError):
@@ -119,7 +119,7 @@ def test_buttons_reach_the_reader():
 def test_a_client_whose_watchdog_was_killed_stops(latero):
     with open_latero(address_of(latero), None) as device:
         ticks(device)
-        os.kill(device.watchdog.process_id, signal.SIGKILL)
+        os.kill(device.watchdog._process.pid, signal.SIGKILL)
         with pytest.raises(DeviceError, match="watchdog"):
             ticks(device, found=lambda *_: False)
         device.write(FELT)  # a loop fades by frames

@@ -222,9 +222,9 @@ def test_a_watchdog_of_a_driver_that_showed_nothing_ends_without_a_word(latero, 
 
 
 def test_it_has_a_session_of_its_own_and_cannot_be_stopped_kindly(process):
-    assert os.getsid(process.process_id) == process.process_id
+    assert os.getsid(process._process.pid) == process._process.pid
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        os.kill(process.process_id, number)
+        os.kill(process._process.pid, number)
     time.sleep(0.05)
     assert process.alive
 
@@ -239,7 +239,7 @@ while True:
     device.read()
     device.write(frame)
     if device.taking:
-        print(device.watchdog.process_id, flush=True)
+        print(device.watchdog._process.pid, flush=True)
     time.sleep(0.001)
 """
 

@@ -85,6 +85,19 @@ def test_uses_that_multiply_are_refused_before_they_fill_the_memory(read):
         read(f'<defs>{levels}</defs><use href="#a9"/>')
 
 
+def test_what_would_take_for_ever_is_left_out_or_refused(read):
+    places = [((n * 37) % 100, (n * 61) % 50) for n in range(4000)]
+    tangle = "M" + " ".join(f"{x + n / 9000} {y}" for n, (x, y) in enumerate(places))
+    left = read(f'<path d="{tangle}z" stroke="red" stroke-width="3"/>')
+    assert warned(left) == [
+        "it has too many places to find where it overlaps itself; it is filled by the even-odd rule"
+    ]
+    clip = f'<clipPath id="c"><path d="{tangle}z"/></clipPath><circle r="5" clip-path="url(#c)"/>'
+    assert any("too many places or crossings" in one for one in warned(read(clip)))
+    with pytest.raises(InputError, match="brackets nested too deep"):
+        read(f"<style>{'@media all{' * 3000}</style>")
+
+
 def test_elements_and_uses_that_nest_too_deep_are_refused(read):
     with pytest.raises(InputError, match="more than 100 deep; ungroup"):
         read("<g>" * 200 + "</g>" * 200)

@@ -98,12 +98,6 @@ def _inside(points, x, y):
     return inside
 
 
-def test_the_comparison_finds_what_is_wrong():
-    x, y = np.meshgrid([0.5, 1.5], [0.5, 1.5])
-    found = _inside(((0, 0), (1, 0), (1, 1), (0, 1)), x, y)
-    assert found.tolist() == [[True, False], [False, False]]
-
-
 @pytest.mark.parametrize("rule", ["nonzero", "evenodd"])
 def test_holes_are_those_of_an_independent_renderer(tmp_path, rule):
     rings = ["M10 10H90V90H10z", "M20 20H80V80H20z", "M30 30V70H70V30z", "M40 40H60V60H40z"]

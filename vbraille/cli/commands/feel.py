@@ -18,6 +18,8 @@ from vbraille.cli import options
                    help="Say each element when the finger comes to it."),
     options.option("--sounds", is_flag=True, help="Play the sounds of elements, too."),
     options.option("--zoom", type=options.Number(0.5, 16), default=1, help="Zoom to begin with."),
+    options.option("--key", is_flag=True,
+                   help="Show numbers for labels that do not fit; entering says the texts."),
     options.option("--y", type=options.Number(0), metavar="MM",
                    help="Height of the line to feel, on a device of one axis."),
     options.speech, options.monitor, options.cues, options.also, options.rate, options.seed,
@@ -29,13 +31,19 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     from vbraille.cli.exploring import equipped, find_model, say_summary
     from vbraille.cli.printing import say
     from vbraille.errors import InputError
+    from vbraille.pictures.keys import keyed
     from vbraille.pictures.loading import check_fits, load_scene
     from vbraille.reading.picture import Picture
     from vbraille.render import MODELS
+    from vbraille.scene.patterns import Label
     from vbraille.simulation.specs import is_simulated
 
     asked = MODELS[chosen["model"] or "stress2-8x8"]
     loaded = load_scene(chosen["file"], asked.style)
+    if chosen["key"]:
+        loaded, key = keyed(loaded, asked.style)
+        labels = [one.text for one in key.scene.elements if isinstance(one, Label)]
+        say(f"key: {'; '.join(labels)}")
     with equipped(ctx, asked.display, hand=chosen["hand"]) as equipment:
         device, attended = equipment.device, equipment.keyboard.attached
         still = chosen["hand"] == "still" and is_simulated(chosen["device"])

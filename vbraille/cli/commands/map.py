@@ -57,6 +57,8 @@ class SwitchStates(click.ParamType):
     options.force,
     options.option("--outline", is_flag=True, help="Draw black outlines, true to scale, for swell "
                    "paper."),
+    options.option("--key", is_flag=True, help="Draw numbers for labels that do not fit, and the "
+                   "key in a second file."),
     options.option("--array", type=Place(2, 3), metavar="X,Y[,θ]", help="Draw the array with its "
                    "centre here, in mm and degrees."),
     options.model(group=options.FIRST, default="stress2-8x8", help="Display whose array is drawn."),
@@ -76,6 +78,7 @@ class SwitchStates(click.ParamType):
 def command(file: str, out: str, force: bool, outline: bool, model: str, **chosen: Any) -> None:
     """Rest is white and full swing is black."""
     from vbraille.files import write_files
+    from vbraille.pictures.keys import keyed
     from vbraille.pictures.loading import load_scene
     from vbraille.pictures.maps import MapRequest, draw_map, draw_signal, kind_of
     from vbraille.render import MODELS
@@ -88,7 +91,11 @@ def command(file: str, out: str, force: bool, outline: bool, model: str, **chose
     )  # fmt: skip
     style = request.model.style
     # Dots of braille have no texture on paper, for which it is too fine.
-    loaded = load_scene(file, style.replace(texture=0.0) if outline else style)
+    style = style.replace(texture=0.0) if outline else style
+    loaded = load_scene(file, style)
+    key = None
+    if chosen["key"]:
+        loaded, key = keyed(loaded, style)
     for note in loaded.notes:
         say(note, aside=True)
     if chosen["signal"]:
@@ -96,6 +103,9 @@ def command(file: str, out: str, force: bool, outline: bool, model: str, **chose
         files, said = [(path, content)], [f"drawn: {path}", *said]
     else:
         files, said = draw_map(loaded, request, path)
+    if key is not None:
+        page, words = draw_map(key, request, path.with_stem(f"{path.stem}-key"))
+        files, said = [*files, *page], [*said, *words]
     write_files(files, replace=force)
     for line in said:
         say(line)

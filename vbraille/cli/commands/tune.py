@@ -13,7 +13,6 @@ from vbraille.cli import options
 @options.optional_file
 @options.takes(
     options.profile, options.device, options.hand, options.language, options.grade, options.table,
-    options.option("--again", is_flag=True, help="Begin anew, whatever choices are kept."),
     options.speech, options.model(group=options.FIRST), options.cues, options.rate, options.seed,
     options.monitor(group="Live view"), options.host, options.port, options.settings,
 )  # fmt: skip
@@ -57,15 +56,13 @@ def command(ctx: click.Context, **chosen: Any) -> None:
         )
         reader.begin()
         name = display_name(model)
-        kept = settings.path.with_name(f"{settings.path.stem}-tune-{settings.profile}-{name}.json")
-        tuning = Tuning(reader, kept, settings.profile, again=chosen["again"])
+        tuning = Tuning(reader, settings.profile)
         tuning.begin()
         equipment.explore(ctx, tuning)
         if tuning.course.knob is None:
             values = profile_values(tuning.course.style)
             save_profile(settings.path, settings.profile, name, values)
-            tuning.forget()
             tuning.say(f"profile {settings.profile}: saved")
         else:
             made = len(tuning.course.choices)
-            tuning.say(f"{made} of {tuning.course.total} choices made; the same command goes on")
+            tuning.say(f"{made} of {tuning.course.total} choices made; nothing is saved")

@@ -240,11 +240,6 @@ class WatchdogProcess:
                 )
 
     @property
-    def process_id(self) -> int:
-        """Number of the watchdog's process."""
-        return self._process.pid
-
-    @property
     def alive(self) -> bool:
         """Tell whether the watchdog lives; this never waits."""
         return self._process.poll() is None

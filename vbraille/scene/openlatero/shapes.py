@@ -310,7 +310,8 @@ def _polygon(element: Element) -> AnyPattern | None:
         markers=markers,
         **look,
     )
-    if markers is not None or (rounded and polygon.wave is not None):
+    along = polygon.stroke is not None and polygon.stroke.along is not None
+    if markers is not None or (rounded and along):
         wanted = rounding_radius_mm(polygon)
         if any(joint.radius_mm < wanted for joint in joints(polygon.vertices_mm, wanted)):
             element.say(
