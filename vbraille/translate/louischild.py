@@ -50,7 +50,8 @@ def compile_table(tables: str) -> None:
 def list_tables() -> list[dict[str, str]]:
     """File name and metadata of each table that has some."""
     found = []
-    for path in takewhile(bool, LIBRARY.lou_listTables()):
+    paths: Any = LIBRARY.lou_listTables()
+    for path in takewhile(bool, paths):
         told = {key: LIBRARY.lou_getTableInfo(path, key.encode()) or b"" for key in KEYS}
         said = {key: value.decode("utf-8", "replace") for key, value in told.items()}
         found.append({"name": Path(path.decode()).name, **said})
