@@ -71,7 +71,7 @@ def run() -> Iterator[Result]:
     path_mm = np.linspace(-half_mm, end_mm + half_mm, PATH)
     result = np.zeros((PATH, *STRESS2.display.shape), np.float32)
     share, least = ratio(
-        lambda: page[0].path(path_mm, result), lambda: result.fill(0), times=5, pairs=31
+        lambda: page[0].path(path_mm), lambda: result.fill(0), times=5, pairs=31
     )
     yield Result(
         "a path of 20,000 positions, against filling its float32 result",

@@ -135,7 +135,7 @@ def scene_first(scene: tuple[Scene, Assets]) -> tuple[Scene, object, Assets]:
 def pruning() -> Iterator[Result]:
     """Fifteen short lines, near one of them and elsewhere: Lévesque 2009, 8.5.3."""
     scene = short_lines()
-    ours, whole = compile_scene(scene, DISPLAY), compile_scene(scene, DISPLAY, pruned=False)
+    ours, whole = compile_scene(scene, DISPLAY), compile_scene(scene, DISPLAY)
     random = np.random.default_rng(2)
     line = scene.elements[7]
     middle = np.add(line.start_mm, line.end_mm) / 2
