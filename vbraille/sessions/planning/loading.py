@@ -230,8 +230,6 @@ def _names(protocol: Protocol) -> Faults:
     for name in protocol.markers.codes:
         known = which(name, conditions)
         yield "markers.codes", name not in conditions, f"{name!r} is no condition{known}"
-    codes = protocol.markers.codes and protocol.marker_codes.values()
-    yield "markers.codes", len({*codes}) < len(codes), "give two conditions the same; name all"
     columns: set[str] = set()
     for n, item in enumerate(protocol.questionnaire):
         own = {item.name, *([f"{item.name}_correct"] if item.right else [])}
@@ -304,9 +302,6 @@ def _chooses(protocol: Protocol) -> Faults:
         bounds = table.least is not None and table.most is not None and table.least < table.most
         yield "procedure.parameter", not (table.parameter and bounds), "needs least below most"
     else:
-        twice = protocol.rules.never_twice_running
-        yield "rules.never_twice_running", twice, "is of fixed values, which [procedure] chooses"
-        yield "procedure.parameter", table.parameter, "is that of [design]; leave it out"
         right = getattr(asks, "right", "more")  # other questions have their own
         if design.reference is None:
             preferred = isinstance(table, QuestPlus) and right is None
