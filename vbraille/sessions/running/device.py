@@ -115,7 +115,7 @@ class SessionDevice(Presenter):
 
     @property
     def told(self) -> dict[str, Any]:
-        """What the event of a run says of it."""
+        """Description of it for the event of a run."""
         return {
             "display": asdict(self.display),
             "calibration": self.engine.calibration,
