@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from array import array
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import lru_cache, partial
@@ -173,7 +172,7 @@ class Layout:
     def __init__(self, book: Book, width: int) -> None:
         self.book, self.width = book, width
         self._lines = lru_cache(_REMEMBERED)(lambda block: lay_out(block, book, width))
-        self._before = array("q", [0])  # numbers of lines before each block, as far as counted
+        self._before = [0]  # numbers of lines before each block, as far as counted
 
     def first(self) -> Line | None:
         """First line of the book; None if it has none."""
