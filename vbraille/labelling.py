@@ -6,7 +6,7 @@ own, and is broken where it is wider than the label may be.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import itertools
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -118,7 +118,7 @@ def label_warnings(
         table does not know, and for each two of which one stands on the other.
     """
     said: list[str] = []
-    standing: list[_Standing] = []
+    standing: list[tuple[str, NDArray[np.float64]]] = []
     tiles = (tile for tile in each(*scene.elements) if isinstance(tile, Tile))
     tiled = {part for part in each(*tiles) if isinstance(part, Label)}
     for label, name in _labels(scene, places):
@@ -135,16 +135,11 @@ def label_warnings(
             said.append(
                 f"{name} reaches {beyond:.1f} mm beyond the canvas; move it, or make it narrower"
             )
-        standing.append(_Standing(name, np.array(corners)))
-    return said + list(_overlaps(standing[:_MOST_COMPARED]))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Standing:
-    """The corners of a label, in order round it; float64[4, 2]."""
-
-    name: str
-    corners: NDArray[np.float64]
+        standing.append((name, np.array(corners)))
+    for (lower, below), (upper, above) in itertools.combinations(standing[:_MOST_COMPARED], 2):
+        if not _apart(above, below):
+            said.append(f"{upper} stands on {lower}; move one of them")
+    return said
 
 
 def _labels(scene: Scene, places: Sequence[str]) -> Iterator[tuple[Label, str]]:
@@ -195,14 +190,6 @@ def _beyond_mm(corners: Sequence[Point], width_mm: float, height_mm: float) -> f
     """Tell how far the farthest corner is beyond a canvas; 0 if none is."""
     far_mm = max(max(-x, x - width_mm, -y, y - height_mm) for x, y in corners)
     return far_mm if far_mm > _TOUCHING_MM else 0.0
-
-
-def _overlaps(standing: Sequence[_Standing]) -> Iterator[str]:
-    """Say which labels stand on others."""
-    for number, upper in enumerate(standing):
-        for lower in standing[:number]:
-            if not _apart(upper.corners, lower.corners):
-                yield f"{upper.name} stands on {lower.name}; move one of them"
 
 
 def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> bool:

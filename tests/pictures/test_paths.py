@@ -6,7 +6,7 @@ import pytest
 from vbraille.errors import InputError
 from vbraille.pictures.paths import path_of
 from vbraille.scene.scene import Canvas
-from vbraille.simulation.exploring import Spot, Wide, spiral
+from vbraille.simulation.exploring import Wide, spiral
 from vbraille.simulation.specs import parse_hand
 
 CANVAS = Canvas(width_mm=100, height_mm=60)
@@ -28,17 +28,6 @@ def test_the_wide_path_goes_round_and_then_inward_and_leaves_no_place_out(size):
     for place in np.random.default_rng(1).uniform((0, 0), size, (200, 2)):
         assert np.hypot(gone[0] - place[0], gone[1] - place[1]).min() <= 10 / np.sqrt(2) + 0.2
     np.testing.assert_allclose(lengths(course) / np.diff(course.t_s), 60)
-
-
-def test_the_spot_path_fills_the_square_about_its_place():
-    course = Spot((40, 30)).over(100, 60)
-    assert abs(course.x_mm - 40).max() == pytest.approx(5, abs=0.05)
-    assert abs(course.y_mm - 30).max() == pytest.approx(5, abs=0.05)
-    counts, *_ = np.histogram2d(course.x_mm, course.y_mm, bins=4)
-    assert counts.min() > 0
-    speed = lengths(course) / np.diff(course.t_s)
-    assert speed.max() == pytest.approx(60, rel=0.01)
-    assert Spot().over(100, 60).x_mm.mean() == pytest.approx(50, abs=0.5)
 
 
 def path(spec, rate_hz=500.0):

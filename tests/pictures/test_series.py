@@ -3,14 +3,13 @@ import io
 import math
 import subprocess
 import sys
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from tests.pictures.tables import TABLES, make_line, make_page, with_style
 from vbraille.pictures.series import mapping, profile, strain, wave, write_csv
-from vbraille.render import LATERO, MAPPINGS, MODELS, STRESS2, VBD, Tuning, single_row
+from vbraille.render import MAPPINGS, MODELS, STRESS2, VBD, Tuning, single_row
 
 
 def peaks(values):
@@ -42,39 +41,6 @@ def test_profile_of_texture_alone_has_k_ripples(cycles):
     # cos(kπp) is 1 at p = 0, ±2/k, … (eq. 4.2)
     expected = radius + radius * np.arange(-cycles + 1, cycles, 2) / cycles
     assert at == pytest.approx(expected, abs=radius / 150)
-
-
-@pytest.mark.parametrize(
-    ("model", "levels"), [(STRESS2, ["0", "25", "100"]), (VBD, ["0", "100"])], ids=["s", "v"]
-)
-def test_profile_shows_the_levels_of_the_source_and_the_readers_own(model, levels):
-    table = profile(model)
-    assert list(table.columns) == ["u_mm", *(f"deflection_T{level}" for level in levels)]
-    own = profile(with_style(model, tuning=Tuning(texture=0.4)))
-    assert "deflection_T40" in own.columns
-
-
-def test_contrast_scales_the_profile():
-    full = profile(with_style(VBD, tuning=Tuning()))
-    half = profile(with_style(VBD, tuning=Tuning(contrast=0.5)))
-    assert half["deflection_T100"] == pytest.approx(full["deflection_T100"] / 2)
-    assert "contrast 50 %" in half.title
-    assert "contrast" not in full.title
-
-
-def test_mapping_compares_all_methods_on_six_rows():
-    table = mapping(STRESS2.style)
-    assert set(table["method"]) == {n for n, each in MAPPINGS.items() if each.rows <= 6}
-    assert [n for n in table.columns if n.startswith("deflection")] == [
-        f"deflection_row_{row}" for row in range(6)
-    ]
-
-
-def test_mapping_compares_all_methods_on_the_rows_of_a_model():
-    table = mapping(LATERO.style, model=LATERO)
-    assert set(table["method"]) == set(MAPPINGS)
-    assert [n for n in table.columns if n.startswith("deflection")][-1] == "deflection_row_7"
-    assert table.title.startswith("Latero: ⠵ on 8 actuator rows")
 
 
 @pytest.mark.parametrize("method", SIX, ids=[each.name for each in SIX])
@@ -110,15 +76,6 @@ def test_wave_columns_are_one_curve_shifted_by_the_pitch(model):
         assert right[:-shift] == pytest.approx(left[shift:], abs=1e-9)
 
 
-def test_wave_begins_and_ends_at_rest_and_is_at_the_dot_between():
-    table = wave(with_style(VBD, tuning=Tuning()))
-    for column in range(12):
-        values = table[f"deflection_column_{column}"]
-        assert values[0] == values[-1] == 0
-        # the column is above the dot's middle when the left one is that much left of it
-        assert table["x_mm"][np.argmax(values)] == pytest.approx(1 - 0.7 * column)
-
-
 def strain_of(width):
     return strain(VBD.style.geometry, Tuning()).where("dot_width_mm", width)
 
@@ -140,19 +97,6 @@ def test_strain_of_a_wider_dot_goes_straight_from_expansion_to_compression(width
     # W < ε rests in between
     narrow = strain_of(0.5)["strain_per_mm"]
     assert (np.abs(narrow[np.argmax(narrow) : np.argmin(narrow)]) < 1e-9).sum() > 10
-
-
-def test_strain_reaches_its_maximum_only_up_to_twice_the_pitch():
-    most = 1 / 0.7
-    assert np.abs(strain_of(1.0)["strain_per_mm"]).max() == pytest.approx(most)
-    widest = np.abs(strain_of(2.0)["strain_per_mm"]).max()
-    assert widest == pytest.approx(most * math.sin(math.pi * 0.7 / 2), rel=1e-3)
-    assert widest < 0.9 * most
-
-
-def test_strain_adds_the_readers_width():
-    table = strain(replace(VBD.style.geometry, dot_width_mm=1.7), Tuning())
-    assert sorted(set(table["dot_width_mm"])) == [0.5, 1.0, 1.7, 2.0]
 
 
 def test_page_has_the_dots_where_geometry_puts_them():

@@ -1,13 +1,11 @@
 """A page of which each actuator shows what lies under it, and how far an array may be turned."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from tests.render.test_page import frame_of, swing
-from tests.shown import part_of
 from vbraille.braille.cells import PLACES
 from vbraille.render import LATERO, STRESS2, STRESS2_8X8, VBD, Straying
 from vbraille.render.braille.style import BAND_BOUNDS, MOST_TILT_RAD
@@ -101,11 +99,3 @@ def test_what_no_straying_can_be(manner, band):
     with pytest.raises(ValueError, match="it must be"):
         Straying(manner, band)
     assert BAND_BOUNDS == (0.0, 0.9)
-
-
-def test_the_band_of_a_style_is_that_of_its_pages():
-    style = replace(STRESS2.style, straying=Straying(band=0.6))
-    page = style.render_page([np.full(4, 63, np.uint8)] * 3, STRESS2.display)
-    pitch_mm = style.geometry.line_pitch_mm
-    assert part_of(page, 1.29 * pitch_mm, 0) == 0
-    assert part_of(page, 1.31 * pitch_mm, 0) == 1

@@ -18,7 +18,6 @@ from tests.render.scenes import (
     scenes,
     scenes_with_places,
 )
-from tests.shown import array_of
 from tests.tiers import heavy
 from vbraille.braille import geometry
 from vbraille.braille.geometry import Geometry
@@ -116,23 +115,6 @@ def test_a_place_gives_the_same_whichever_way_the_hand_came(drawn, random):
         np.testing.assert_allclose(renderer.path(x_mm[way]), frames[way], rtol=0, atol=FLOAT32)
 
 
-@pytest.mark.parametrize("count", [1, 63, 64, 65, 127, 128, 129, 200])
-def test_a_path_of_any_length_is_its_frames(count, rng):
-    for scene in models(line(cell(1, 5), 63, cell(4))).values():
-        x_mm = rng.uniform(-8, 30, count)
-        frames = scene.renderer().path(x_mm)
-        assert frames.shape == (count, *scene.array.shape)
-        np.testing.assert_allclose(frames, frames_at(scene, x_mm), rtol=0, atol=FLOAT32)
-
-
-@examples(60)
-@given(scenes_with_places())
-def test_a_frame_and_a_path_say_the_same(drawn):
-    scene, x_mm = drawn
-    frames = scene.renderer().path(x_mm)
-    np.testing.assert_allclose(frames, frames_at(scene, x_mm), rtol=0, atol=FLOAT32)
-
-
 @examples(60)
 @given(scenes_with_places(), scenes_with_places())
 def test_nothing_stays_from_earlier_calls(drawn, other):
@@ -198,15 +180,6 @@ def test_all_deflections_are_finite_and_from_0_to_1(scene, x_mm):
             np.testing.assert_array_equal(frame, np.broadcast_to(scene.idle(), frame.shape))
 
 
-@examples(120)
-@given(scenes_with_places())
-def test_deflections_on_the_line_are_from_0_to_1(drawn):
-    scene, x_mm = drawn
-    renderer = scene.renderer()
-    for frames in (frames_at(scene, x_mm), renderer.path(x_mm), scene.twin(x_mm)):
-        assert np.all((frames >= 0) & (frames <= 1))
-
-
 @pytest.mark.parametrize("texture", [0.25, 0.5, 1.0])
 def test_rounding_never_goes_beyond_the_ends_of_the_swing(texture):
     # Where a dot just reaches them: the peak of the VBD's, and every half wave of the texture.
@@ -251,15 +224,6 @@ def test_no_slope_is_steeper_than_the_equations_allow(drawn, exponent):
     change = frames_at(scene, x_mm + half_step_mm) - frames_at(scene, x_mm - half_step_mm)
     most = scene.steepest_per_mm() * 2 * half_step_mm
     assert np.abs(change).max() <= most + 1e-12 + 2 * scene.rounding(x_mm)
-
-
-@pytest.mark.parametrize("texture", [0.0, 1.0])
-def test_the_bound_on_slopes_is_a_close_one(texture):
-    for scene in models(line(cell(1)), tuning=Tuning(texture=texture)).values():
-        x_mm = np.linspace(0, scene.geometry.dot_width_mm, 2001)
-        one = replace(scene, array=array_of(scene.array.rows, 1, 1.0, 1.0))
-        slopes = np.abs(np.diff(frames_at(one, x_mm)[:, 0, 0]) / np.diff(x_mm))
-        assert 0.9 * scene.steepest_per_mm() < slopes.max() <= scene.steepest_per_mm()
 
 
 # Contrast

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from tests.render.scenes import cell, examples, frame_at, line, models
 from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array_of, from_left
-from tests.tiers import by_tier, heavy
+from tests.tiers import by_tier
 from vbraille.braille import geometry
 from vbraille.braille.geometry import Geometry
 from vbraille.render import (
@@ -87,17 +87,6 @@ def test_the_polynomial_of_every_k_is_the_cosine(cycles, level):
     np.testing.assert_allclose(frames, expected, rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("level", [0.0, 0.25, 1.0])
-def test_the_texture_of_the_vbd_has_no_k_to_turn(level):
-    x_mm = np.linspace(0, 2, 50)
-    paths = [
-        models(line(1), tuning=Tuning(texture=level, cycles=cycles))["vbd"].renderer().path(x_mm)
-        for cycles in (1, 7, 11)
-    ]
-    np.testing.assert_array_equal(paths[0], paths[1])
-    np.testing.assert_array_equal(paths[0], paths[2])
-
-
 @pytest.mark.parametrize("profile", Profile)
 def test_of_overlapping_dots_the_larger_swing_is_shown(profile):
     # Both dots of a cell 3 mm wide and 2 mm apart; and the right one reaches into the next cell.
@@ -120,37 +109,6 @@ def test_of_overlapping_dots_the_larger_swing_is_shown(profile):
         expected = [1 - 0.8 * max(swings), 0.8 * max(swings), 1, 0, 1, 0]
         np.testing.assert_allclose(frame[:, 0], expected, rtol=0, atol=1e-12)
     assert {(True, True, False), (False, True, True)} <= seen
-
-
-@pytest.mark.parametrize("contrast", [0.0, 0.3, 1.0])
-def test_contrast_scales_about_both_idle_ends(contrast):
-    scene = models(
-        line(cell(1, 2)), mapping=MAPPINGS["row-sheared"], tuning=Tuning(contrast=contrast)
-    )["stress2"]
-    on_the_dots = frame_at(scene.renderer(), 1.3)[:, 0]
-    expected = [contrast, contrast, 1 - contrast, 1 - contrast, 0, 0]
-    np.testing.assert_allclose(on_the_dots, expected, atol=1e-12)
-    off_the_dots = frame_at(scene.renderer(), -20.0)[:, 0]
-    np.testing.assert_array_equal(off_the_dots, [0, 0, 1, 1, 0, 0])
-
-
-def test_an_empty_line_is_idle_everywhere():
-    for scene in models(line()).values():
-        x_mm = np.linspace(-30, 30, 61)
-        assert not scene.renderer().path(x_mm).any()
-        assert not frame_at(scene.renderer(), 0.5).any()
-    inverted = models(line(), mapping=MAPPINGS["sheared"])["stress2"].renderer()
-    np.testing.assert_array_equal(frame_at(inverted, 0.5)[:, 4], [1, 0, 1, 0, 1, 0])
-
-
-def test_a_line_of_one_cell():
-    renderer = models(line(cell(4)))["stress2"].renderer()
-    # The right dot column stands 3.7 mm from the left edge; column 5 is 6 mm from the left one.
-    frame = frame_at(renderer, 3.7 + 1.3 - 6.0)
-    np.testing.assert_allclose(frame[0, 5], 1.0, atol=1e-12)
-    far = np.abs(np.arange(10) - 5) * 1.2 > 1.3
-    np.testing.assert_array_equal(frame[0, far], 0.0)
-    np.testing.assert_array_equal(frame[1:], 0.0)
 
 
 @pytest.mark.parametrize("mapping", MAPPINGS.values(), ids=MAPPINGS)
@@ -180,44 +138,7 @@ def test_the_lateros_outer_two_rows_rest(mapping, rng):
     np.testing.assert_array_equal(all_rows[:, [0, 7]], 0.0)
 
 
-def test_one_dot_row_on_an_array_of_many_rows():
-    scene = models(np.full(2, 63, np.uint8), mapping=single_row(2))["stress2"]
-    frames = scene.renderer().path(np.linspace(-12, 20, 100))
-    assert np.ptp(frames[:, 2]) > 0.9
-    np.testing.assert_array_equal(np.delete(frames, 2, axis=1), 0.0)
-
-
-def test_the_largest_array():
-    largest = array_of(rows=16, columns=64, column_pitch_mm=0.5, row_pitch_mm=1.0)
-    scene = models(line(63, 0, 21), array=largest, mapping=MAPPINGS["paired"])["stress2"]
-    x_mm = np.array([-20.0, -1.0, 3.3])
-    twin = scene.twin(x_mm)
-    assert np.ptp(twin) > 0.9
-    np.testing.assert_allclose(scene.renderer().path(x_mm), twin, rtol=0, atol=1e-6)
-    np.testing.assert_allclose(frame_at(scene.renderer(), -1.0), twin[1], rtol=0, atol=1e-12)
-
-
 # Where frames are put
-
-
-@heavy  # frames of single precision, which nothing asks for, are compiled for it
-def test_a_frame_in_single_and_in_double_precision():
-    for scene in models(line(63, 63)).values():
-        renderer = scene.renderer()
-        single, double = (frame_at(renderer, 2.2, dtype) for dtype in (np.float32, np.float64))
-        assert np.ptp(double) > 0.1
-        np.testing.assert_allclose(single, double, rtol=0, atol=1e-7)
-
-
-@heavy  # its kind of array is compiled for
-def test_a_frame_may_be_a_part_of_something_larger():
-    scene = models(line(63, 63))["stress2"]
-    renderer = scene.renderer()
-    larger = np.full((8, 24), -5.0)
-    renderer.frame(2.2, larger[1:7, 2:22:2])
-    np.testing.assert_allclose(larger[1:7, 2:22:2], scene.twin(2.2)[0], rtol=0, atol=1e-12)
-    larger[1:7, 2:22:2] = -5.0
-    np.testing.assert_array_equal(larger, -5.0)
 
 
 @pytest.mark.parametrize("shape", [(1, 10), (5, 10), (7, 10), (6, 9), (6, 11), (10, 6)])
@@ -228,41 +149,6 @@ def test_a_frame_of_another_shape_is_refused(shape):
         with pytest.raises(ValueError, match=r"^the frame has not the shape of the array$"):
             renderer.frame(1.3, out)
         assert not out.any()
-
-
-def test_a_path_fills_what_it_is_given():
-    renderer = models(line(63, 63))["stress2"].renderer()
-    x_mm = np.linspace(0, 5, 7)
-    room = np.full((9, 6, 10), np.float32(-5))
-    assert renderer.path(x_mm, room[1:8]).base is room
-    np.testing.assert_array_equal(room[1:8], renderer.path(x_mm))
-    np.testing.assert_array_equal(room[[0, 8]], -5)
-
-
-@pytest.mark.parametrize("shape", [(6, 6, 10), (8, 6, 10), (7, 8, 10), (7, 6, 12), (7, 60)])
-def test_a_path_refuses_frames_of_another_shape(shape):
-    renderer = models(line(63))["stress2"].renderer()
-    says = rf"^the frames have shape \({', '.join(map(str, shape))}\); it must be \(7, 6, 10\)$"
-    with pytest.raises(ValueError, match=says):
-        renderer.path(np.linspace(0, 5, 7), np.empty(shape, np.float32))
-
-
-def test_positions_of_a_path_may_be_any_numbers_in_a_row():
-    renderer = models(line(63))["stress2"].renderer()
-    x_mm = np.arange(6.0)
-    frames = renderer.path(x_mm)
-    for same in (np.repeat(x_mm, 2)[::2], x_mm.astype(np.float32), np.arange(6), list(x_mm)):
-        np.testing.assert_array_equal(renderer.path(same), frames)
-    assert renderer.path(np.empty(0)).shape == (0, 6, 10)
-
-
-def test_the_line_may_change_after_it_was_compiled():
-    masks = line(63, 63)
-    renderer = models(masks)["stress2"].renderer()
-    before = frame_at(renderer, 1.3)
-    masks[:] = 0
-    np.testing.assert_array_equal(frame_at(renderer, 1.3), before)
-    assert before.any()
 
 
 # From one frame to another

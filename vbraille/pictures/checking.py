@@ -198,7 +198,7 @@ class _Check:
         alone = replace(self._scene, elements=(pattern,), operation="overwrite")
         shown = SceneMap(alone, self._loaded.assets)
         places = (columns + 0.5) * step, (rows + 0.5) * step
-        hides = shown.opacity(*places, every_layer=True)
+        hides = shown.deflections(*places, is_mask=True, every_layer=True)
         felt = hides >= _FELT
         if isinstance(pattern, Label):
             felt = np.ones_like(felt)

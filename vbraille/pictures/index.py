@@ -216,7 +216,9 @@ class SceneIndex:
     def opacity(self, number: int, x_mm: float, y_mm: float) -> float:
         """Tell how much of what lies below a part, by its number, it hides at a place: 0 … 1."""
         at = np.array([x_mm]), np.array([y_mm])
-        return float(self._leaf_map(number).opacity(*at, switches=self.switches)[0, 0])
+        return float(
+            self._leaf_map(number).deflections(*at, is_mask=True, switches=self.switches)[0, 0]
+        )
 
     def _alone(self, pattern: AnyPattern) -> SceneMap:
         alone = replace(self._scene, elements=(pattern,), operation="overwrite")
@@ -236,7 +238,7 @@ class SceneIndex:
             for low, high in ((box.left, box.right), (box.top, box.bottom))
             for count in [min(max(int((high - low) / _STEP_MM), 1), _MOST_STEPS)]
         )
-        shown = drawn.opacity(x_mm, y_mm, switches=self.switches)
+        shown = drawn.deflections(x_mm, y_mm, is_mask=True, switches=self.switches)
         rows, columns = np.nonzero(shown >= min(_FELT, max(float(shown.max()) / 2, _TRACE)))
         return np.stack((x_mm[columns], y_mm[rows]), axis=1)
 

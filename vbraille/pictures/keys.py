@@ -75,7 +75,7 @@ def keyed(loaded: LoadedScene, style: BrailleStyle) -> tuple[LoadedScene, Loaded
             return replace(pattern, text=numbers[pattern], title=title, width_mm=None)
         return with_children(pattern, numbered)
 
-    scene = loaded.scene
+    scene = loaded.opened.resolved  # with what is there at other zooms, too
     shown = replace(scene, elements=tuple(numbered((), element) for element in scene.elements))
     picture = with_assets(dataclasses.replace(loaded.opened, resolved=shown), style)
     page = _page(loaded, numbers, style)

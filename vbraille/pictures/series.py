@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -120,7 +120,7 @@ def page(lines: Sequence[Line], model: Model, *, x_mm: float, first: int = 1) ->
     eight = any((line.masks > 0x3F).any() for line in lines)
     places = list(PLACES.items())[: 8 if eight else 6]
     none, middle = math.nan, geometry.dot_width_mm / 2
-    rows: list[tuple[str | float, ...]] = [
+    rows: list[tuple[Any, ...]] = [
         (
             "dot",
             first + number,

@@ -106,12 +106,18 @@ def find_dots(cells, rows, count, which):
         rows[SLOT, n] = slot if slot > 0.0 else 0.0
 
 
+@inlined
+def _own_place(cells, x, y):
+    """Place along lines of cells, and across them."""
+    right, down = x - cells[LEFT], y - cells[TOP]
+    u = right * cells[COSINE] + down * cells[SINE]
+    return u, down * cells[COSINE] - right * cells[SINE]
+
+
 @compiled
 def highest_dot(cells, table, x, y):
     """Compute what a place has of lines of cells whose dots are round; the highest dot counts."""
-    right, down = x - cells[LEFT], y - cells[TOP]
-    u = right * cells[COSINE] + down * cells[SINE]
-    v = down * cells[COSINE] - right * cells[SINE]
+    u, v = _own_place(cells, x, y)
     if not (0.0 < u < cells[WIDTH] and 0.0 < v < cells[HEIGHT]):
         return 0.0
     pitch, dot, row_pitch = cells[CELL_PITCH], cells[DOT_WIDTH], cells[DOT_ROW_PITCH]
@@ -141,9 +147,7 @@ def opacity(cells, x, y):
 
     From there it ends over `FADE_MM`; the mask is ours, after Lévesque 2009, 8.4.5.
     """
-    right, down = x - cells[LEFT], y - cells[TOP]
-    u = right * cells[COSINE] + down * cells[SINE]
-    v = down * cells[COSINE] - right * cells[SINE]
+    u, v = _own_place(cells, x, y)
     radius = 0.5 * cells[DOT_WIDTH]
     beside = max(max(-u, u - cells[WIDTH]) - radius, 0.0)
     below = max(max(-v, v - cells[HEIGHT]) - radius, 0.0)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, TypedDict, Unpack
+from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
@@ -67,6 +67,7 @@ if TYPE_CHECKING:
 _FAR = 1e30  # stands for infinity
 _LEAST_FADE_MM = 1e-9  # of a fill
 _CHUNK = 8  # segments or dots that share a box
+_BLOCK = 24  # lines and columns of a raster that are computed together
 _JOINS = {
     "add": i.ADD,
     "weighted": i.ADD,
@@ -305,7 +306,7 @@ class _Writer:
         if box is None and not shut_by:
             yield
             return
-        within = [min(max(side, -_FAR), _FAR) for side in box or (-_FAR, -_FAR, _FAR, _FAR)]
+        within = np.clip(box or (-_FAR, -_FAR, _FAR, _FAR), -_FAR, _FAR)
         self.say(i.GATE, *within, shut_by, 0.0)
         begin = len(self.numbers)
         before = self._measured
@@ -661,7 +662,8 @@ class _Writer:
             self.say(i.PROFILE, *_profile(shape.cue_width_mm, shape.cue_edge_mm))
             self.say(i.MULTIPLY)
             # Bands that are not wider than a row of dots end as the row does.
-            if paths.is_open(shape) and shape.cue_width_mm > shape.width_mm:
+            _, closed = shape.outline
+            if not closed and shape.cue_width_mm > shape.width_mm:
                 self.say(i.BEYOND, 2.0 / shape.width_mm)
                 self.say(i.MULTIPLY)
         shows, hides = {
@@ -691,33 +693,6 @@ def _swing(vibration: Vibration | None) -> tuple[float, float]:
     return (0.0, 0.0) if vibration is None else (vibration.frequency_hz, vibration.amplitude)
 
 
-class Moment(TypedDict, total=False):
-    """Moment at which a scene is shown as a whole.
-
-    Parameters
-    ----------
-    time_s
-        Time since the scene was first shown, in seconds.
-    parity
-        0 for actuators whose column and row are both even or both odd, 1 for the others.
-    noise_seed
-        Seed of the noise that stands for vibrations; None shows them as they are at the time.
-        Gratings that travel stand where they do at first then.
-    velocity_mm_s, switches
-        Velocity of the hand for as long as signals remember, and states of the switches, as
-        `vbraille.scene.signals.packed` has them.
-    every_layer
-        Whether all signals are 1, so that every layer is there.
-    """
-
-    time_s: float
-    parity: int
-    noise_seed: int | None
-    velocity_mm_s: Point
-    switches: int
-    every_layer: bool
-
-
 class SceneMap:
     """A scene as a whole, for pictures of it.
 
@@ -739,7 +714,17 @@ class SceneMap:
         self._compiled: dict[bool, tuple[NDArray[np.float64], NDArray[np.uint16]]] = {}
 
     def deflections(
-        self, x_mm: NDArray[np.float64], y_mm: NDArray[np.float64], **moment: Unpack[Moment]
+        self,
+        x_mm: NDArray[np.float64],
+        y_mm: NDArray[np.float64],
+        *,
+        is_mask: bool = False,
+        time_s: float = 0.0,
+        parity: int = 0,
+        noise_seed: int | None = None,
+        velocity_mm_s: Point = (0.0, 0.0),
+        switches: int = 0,
+        every_layer: bool = False,
     ) -> NDArray[np.float32]:
         """Compute the deflections of actuators at the places of a raster: Lévesque 2009, 8.3.3.
 
@@ -747,25 +732,53 @@ class SceneMap:
         ----------
         x_mm, y_mm : float64[w], float64[h]
             Places of its columns and lines on the canvas.
-        moment
-            When that is; see `Moment`.
+        is_mask
+            Whether the opacity mask of the scene is computed (8.4.5). Only that of a blend that is
+            chosen by what moves depends on the time. A scene of one element has the mask of that.
+        time_s
+            Time since the scene was first shown, in seconds.
+        parity
+            0 for actuators whose column and row are both even or both odd, 1 for the others.
+        noise_seed
+            Seed of the noise that stands for vibrations; None shows them as they are at the time.
+            Gratings that travel stand where they do at first then.
+        velocity_mm_s, switches
+            Velocity of the hand for as long as signals remember, and states of the switches, as
+            `vbraille.scene.signals.packed` has them.
+        every_layer
+            Whether all signals are 1, so that every layer is there.
 
         Returns
         -------
         float32[h, w]
             Deflections, 0 … 1; 0 beyond the canvas.
         """
-        return self._raster(False, x_mm, y_mm, **moment)
-
-    def opacity(
-        self, x_mm: NDArray[np.float64], y_mm: NDArray[np.float64], **moment: Unpack[Moment]
-    ) -> NDArray[np.float32]:
-        """Compute the opacity mask of the scene at the places of a raster: Lévesque 2009, 8.4.5.
-
-        Arguments and result are as those of `deflections`; only the mask of a blend that is chosen
-        by what moves depends on the time. A scene of one element has the mask of that.
-        """
-        return self._raster(True, x_mm, y_mm, **moment)
+        given = self.signal_values(time_s, velocity_mm_s, switches)
+        if every_layer:
+            given[:MOST_SIGNALS] = 1.0
+        if is_mask not in self._compiled:
+            numbers = np.zeros(work.CODE)
+            self._compiled[is_mask] = _written(self._scene, self._assets, numbers, is_mask=is_mask)
+        numbers, table = self._compiled[is_mask]
+        more = 1 + int(numbers[work.INSTRUCTIONS]) // _BLOCK**2
+        rows = np.zeros((work.LIVE_ROW + more, _BLOCK**2))
+        rows[work.GIVEN_ROW, : given.size] = given
+        shape = len(y_mm), len(x_mm)
+        time, signs = time_s, np.broadcast_to(np.float32(-1.0 if parity else 1.0), shape)
+        if noise_seed is not None:
+            random = np.random.default_rng(noise_seed)
+            time, signs = math.nan, random.random(shape, np.float32) * 2 - 1
+        out = np.empty(shape, np.float32)
+        for top in range(0, shape[0], _BLOCK):
+            for left in range(0, shape[1], _BLOCK):
+                block = slice(top, top + _BLOCK), slice(left, left + _BLOCK)
+                made = np.empty(out[block].shape)
+                x, y = np.meshgrid(x_mm[block[1]], y_mm[block[0]])
+                places = np.stack([x, y, signs[block]]).reshape(3, -1)
+                rows[work.X_ROW : work.SIGN_ROW + 1, : made.size] = places
+                i.show(numbers, table, rows, time, made)
+                out[block] = made
+        return out
 
     def signal_values(
         self, time_s: float, velocity_mm_s: Point, switches: int
@@ -780,35 +793,3 @@ class SceneMap:
             kernels.begin(numbers, at)
             kernels.compute(numbers, at, 0.0)
         return np.append(at[work.SIGNAL : work.MEMORY], (math.nan, math.nan))
-
-    def _raster(
-        self,
-        is_mask: bool,
-        x_mm: NDArray[np.float64],
-        y_mm: NDArray[np.float64],
-        *,
-        time_s: float = 0.0,
-        parity: int = 0,
-        noise_seed: int | None = None,
-        velocity_mm_s: Point = (0.0, 0.0),
-        switches: int = 0,
-        every_layer: bool = False,
-    ) -> NDArray[np.float32]:
-        given = self.signal_values(time_s, velocity_mm_s, switches)
-        if every_layer:
-            given[:MOST_SIGNALS] = 1.0
-        if is_mask not in self._compiled:
-            numbers = np.zeros(work.CODE)
-            self._compiled[is_mask] = _written(self._scene, self._assets, numbers, is_mask=is_mask)
-        numbers, table = self._compiled[is_mask]
-        x_mm, y_mm = np.ascontiguousarray(x_mm, np.float64), np.ascontiguousarray(y_mm, np.float64)
-        out = np.empty((y_mm.size, x_mm.size), np.float32)
-        noise = np.empty((0, 0), np.float32)
-        if noise_seed is not None:
-            noise = np.random.default_rng(noise_seed).random(out.shape, np.float32) * 2 - 1
-        places = i.BLOCK_COLUMNS * i.BLOCK_LINES
-        rows = np.zeros((work.LIVE_ROW + 1 + int(numbers[work.INSTRUCTIONS]) // places, places))
-        rows[work.GIVEN_ROW, : given.size] = given
-        time = math.nan if noise_seed is not None else time_s
-        i.raster(numbers, table, rows, x_mm, y_mm, -1.0 if parity else 1.0, noise, time, out)
-        return out

@@ -1,4 +1,4 @@
-"""The evaluator of compiled scenes, and frames and rasters made by it.
+"""The evaluator of compiled scenes.
 
 A scene is a list of instructions. First those are found that matter to any of the places that are
 asked for; then each is done for all of them, on a stack of rows of deflections. An instruction is
@@ -43,19 +43,13 @@ from vbraille.render.work import (
     INSIDE_ROW,
     LIVE_ROW,
     MOST_SIGNALS,
-    ORIGIN_X,
-    ORIGIN_Y,
     PART_ROW,
     PLACE_ROW,
     RIGHT_MM,
     SIGN_ROW,
-    SIGNAL,
     STACK_ROW,
-    TIME,
     X_ROW,
     Y_ROW,
-    X,
-    Y,
 )
 
 (
@@ -135,33 +129,22 @@ def _shifted(own, given, time, x, y):
 
 
 @compiled
-def _find_live(numbers, rows, gates, time, left, top, right, bottom):
+def _find_live(numbers, rows, gates, left, top, right, bottom):
     """List the places of the instructions that matter within a box, and return how many."""
-    outer, given, width = rows[STACK_ROW], rows[GIVEN_ROW], rows.shape[1]
+    width = rows.shape[1]
     here, count, depth = CODE, 0, 0
     while numbers[here] != END:
         operation, own = int(numbers[here]), numbers[here + HEAD :]
         length = int(numbers[here + 1])
         if operation == GATE:
             beside = own[0] > right or own[2] < left or own[1] > bottom or own[3] < top
-            if beside or gates & int(own[4]) != 0:
+            # In a tile, or in what moves, places are elsewhere.
+            if (beside and depth == 0) or gates & int(own[4]) != 0:
                 length += int(own[5])
         else:
             rows[LIVE_ROW + count // width, count % width] = here
             count += 1
-        if operation in (WRAP, SHIFT):
-            outer[depth], outer[depth + 1], outer[depth + 2] = left, top, right
-            outer[depth + 3] = bottom
-            depth += 4
-            if operation == WRAP:
-                left, top, right, bottom = 0.0, 0.0, own[2], own[3]
-            else:
-                left, top = _shifted(own, given, time, left, top)
-                right, bottom = _shifted(own, given, time, right, bottom)
-        elif operation == RESTORE:
-            depth -= 4
-            left, top, right = outer[depth], outer[depth + 1], outer[depth + 2]
-            bottom = outer[depth + 3]
+        depth += (operation in (WRAP, SHIFT)) - (operation == RESTORE)
         here += length
     return count
 
@@ -178,18 +161,14 @@ def _evaluate(numbers, table, rows, count, gates, time, left, top, right, bottom
     across, along, place = rows[ACROSS_ROW], rows[ALONG_ROW], rows[PLACE_ROW]
     inside, part, given = rows[INSIDE_ROW], rows[PART_ROW], rows[GIVEN_ROW]
     width, above = rows.shape[1], STACK_ROW  # the row above the uppermost value
-    for k in range(_find_live(numbers, rows, gates, time, left, top, right, bottom)):
+    for k in range(_find_live(numbers, rows, gates, left, top, right, bottom)):
         here = int(rows[LIVE_ROW + k // width, k % width])
         operation, end = int(numbers[here]), here + int(numbers[here + 1])
         own = numbers[here + HEAD :]
         new, first, second, third = rows[above], rows[above - 1], rows[above - 2], rows[above - 3]
         above += int(numbers[here + 2])
-        if operation == LEVEL:
-            level = own[0]
-            for n in range(count):
-                new[n] = level
-        elif operation == SIGNAL_VALUE:
-            level = given[int(own[0])]
+        if operation in (LEVEL, SIGNAL_VALUE):
+            level = own[0] if operation == LEVEL else given[int(own[0])]
             for n in range(count):
                 new[n] = level
         elif operation == INVERT:
@@ -355,67 +334,24 @@ def _bounds(rows, count):
 
 
 @compiled
-def show(numbers, table, rows, at, out):
-    """Fill a frame with the deflections of a scene, at the places that are in the rows X and Y."""
-    above, across = out.shape
-    count = above * across
+def show(numbers, table, rows, time, out):
+    """Fill lines of deflections of a scene, at the places that are in the rows X and Y.
+
+    The row of signs, and that of the values of signals, are filled in, too.
+    """
+    lines, columns = out.shape
+    count = lines * columns
     left, top, right, bottom = _bounds(rows, count)
     right_mm, bottom_mm = numbers[RIGHT_MM], numbers[BOTTOM_MM]
     # Written so that NaN is nowhere.
     is_seen = left <= right_mm and right >= 0.0 and top <= bottom_mm and bottom >= 0.0
     if is_seen:
-        for n in range(MOST_SIGNALS):
-            rows[GIVEN_ROW, n] = at[SIGNAL + n]
-        rows[GIVEN_ROW, _CENTER_X] = numbers[ORIGIN_X] + at[X]
-        rows[GIVEN_ROW, _CENTER_Y] = numbers[ORIGIN_Y] + at[Y]
         gates = shut_gates(numbers, rows[GIVEN_ROW])
-        evaluate(numbers, table, rows, count, gates, at[TIME], left, top, right, bottom)
-    for n in range(count):
-        x, y = rows[X_ROW, n], rows[Y_ROW, n]
-        on_canvas = is_seen and 0.0 <= x <= right_mm and 0.0 <= y <= bottom_mm
-        value = min(max(rows[STACK_ROW, n], 0.0), 1.0)
-        out[n // across, n % across] = value if on_canvas else 0.0
-
-
-# Places of a raster that are computed together: what matters to none of them is not looked at.
-BLOCK_COLUMNS, BLOCK_LINES = 32, 16
-
-
-@compiled
-def raster(numbers, table, rows, x_mm, y_mm, sign, noise, time, out):
-    """Fill a raster.
-
-    Parameters
-    ----------
-    numbers, table
-        The program.
-    rows : float64[SCRATCH_ROWS, n]
-        Room to work in, with the values of the signals.
-    x_mm, y_mm : float64[w], float64[h]
-        Places of the raster's columns and lines.
-    sign : float
-        1 or -1, by which vibrations swing.
-    noise : float32[h, w] or float32[0, 0]
-        Noise from -1 to 1 that stands for vibrations, if there is no time.
-    time : float
-        Time in seconds, or NaN.
-    out : float32[h, w]
-        Deflections.
-    """
-    right, bottom = numbers[RIGHT_MM], numbers[BOTTOM_MM]
-    gates = shut_gates(numbers, rows[GIVEN_ROW])
-    for first in range(0, y_mm.size, BLOCK_LINES):
-        lines = min(BLOCK_LINES, y_mm.size - first)
-        for begin in range(0, x_mm.size, BLOCK_COLUMNS):
-            columns = min(BLOCK_COLUMNS, x_mm.size - begin)
-            for n in range(lines * columns):
-                line, column = first + n // columns, begin + n % columns
-                rows[X_ROW, n], rows[Y_ROW, n] = x_mm[column], y_mm[line]
-                rows[SIGN_ROW, n] = noise[line, column] if noise.size else sign
-            x0, y0, x1, y1 = _bounds(rows, lines * columns)
-            evaluate(numbers, table, rows, lines * columns, gates, time, x0, y0, x1, y1)
-            for n in range(lines * columns):
-                x, y = rows[X_ROW, n], rows[Y_ROW, n]
-                value = min(max(rows[STACK_ROW, n], 0.0), 1.0)
-                value = value if 0 <= x <= right and 0 <= y <= bottom else 0.0
-                out[first + n // columns, begin + n % columns] = value
+        evaluate(numbers, table, rows, count, gates, time, left, top, right, bottom)
+    n = 0
+    for line in range(lines):
+        for column in range(columns):
+            x, y = rows[X_ROW, n], rows[Y_ROW, n]
+            on_canvas = is_seen and 0.0 <= x <= right_mm and 0.0 <= y <= bottom_mm
+            out[line, column] = min(max(rows[STACK_ROW, n], 0.0), 1.0) if on_canvas else 0.0
+            n += 1

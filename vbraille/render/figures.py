@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-import msgspec
-
 from vbraille.errors import InputError
 from vbraille.render.labels import Assets, Written
 from vbraille.scene.bounds import Box, bounds
@@ -119,30 +117,21 @@ def page_with_figures(
 def _figure(figure: Scene, parts: tuple[AnyPattern, ...], place_mm: Point, assets: Assets) -> Group:
     """All of a figure as one pattern, which is at rest beyond the rectangle of its canvas."""
     left, top = place_mm
-    right, bottom = left + figure.canvas.width_mm, top + figure.canvas.height_mm
-    whole = Group(
-        id=FIGURE,
-        title=figure.title,
-        description=figure.description,
-        operation=figure.operation,
-        parts=parts,
-    )
+    canvas = Box(left, top, left + figure.canvas.width_mm, top + figure.canvas.height_mm)
+    whole = Group(operation=figure.operation, parts=parts)
+    shown: tuple[AnyPattern, ...] = (whole,)
     reach = bounds(whole, assets.boxes())
-    if reach is not None and Box(left, top, right, bottom).joined(reach) == (
-        left,
-        top,
-        right,
-        bottom,
-    ):
-        return whole
-    corners = ((left, top), (right, top), (right, bottom), (left, bottom))
-    window = Polygon(vertices_mm=corners, fill=Fill(texture=Uniform(), fade_mm=_EDGE_MM))
+    if reach is None or canvas.joined(reach) != canvas:
+        right, bottom = canvas.right, canvas.bottom
+        corners = ((left, top), (right, top), (right, bottom), (left, bottom))
+        fill = Fill(texture=Uniform(), fade_mm=_EDGE_MM)
+        shown = (whole, Polygon(vertices_mm=corners, fill=fill))
     return Group(
         id=FIGURE,
         title=figure.title,
         description=figure.description,
         operation="multiply",
-        parts=(msgspec.structs.replace(whole, id="", title="", description=""), window),
+        parts=shown,
     )
 
 

@@ -12,9 +12,7 @@ from vbraille.render.evaluating import show
 from vbraille.render.frames import copy
 from vbraille.render.signalkernels import begin, compute
 from vbraille.render.waves import compiled as _compiled
-from vbraille.render.waves import phase, swung
 from vbraille.render.work import (
-    AMPLITUDE,
     APART,
     AT,
     CELL_NUMBERS,
@@ -24,11 +22,13 @@ from vbraille.render.work import (
     COLUMNS,
     FREE,
     FREQUENCY,
+    GIVEN_ROW,
     HYSTERESIS,
     KIND,
     LINE_PITCH,
     LINES,
     MEMORY,
+    MOST_SIGNALS,
     NO_PART,
     ORIGIN_X,
     ORIGIN_Y,
@@ -36,6 +36,7 @@ from vbraille.render.work import (
     ROW_PITCH,
     ROWS,
     SIGN_ROW,
+    SIGNAL,
     SLOT,
     SLOTS,
     SWING,
@@ -48,7 +49,7 @@ from vbraille.render.work import (
     Y,
 )
 
-_PAGE, _VIBRATION, SCENE = 1.0, 2.0, 3.0  # of `ProgramKind`
+_PAGE, SCENE = 1.0, 2.0  # of `ProgramKind`
 _IDLE = CELLS + CELL_NUMBERS
 # An array that was turned too far shows braille again once it is upright by so much more.
 _UPRIGHT = 0.85
@@ -132,11 +133,10 @@ def frame(numbers, table, scratch, part, at, out):
     # Compiled code would otherwise read beyond the numbers.
     if rows != numbers[ROWS] or columns != numbers[COLUMNS]:
         raise ValueError("the frame has not the shape of the array")
-    kind, amplitude = numbers[KIND], numbers[AMPLITUDE]
+    is_free = seamless(numbers)
     x0, y0 = numbers[ORIGIN_X] + at[X], numbers[ORIGIN_Y] + at[Y]
     cosine, sine = math.cos(at[THETA]), math.sin(at[THETA])
     pitch, row_pitch, center = numbers[COLUMN_PITCH], numbers[ROW_PITCH], numbers[CENTER]
-    swing = phase(numbers[FREQUENCY], at[TIME])
     n = 0
     for row in range(rows):
         down = (row - 0.5 * (rows - 1)) * row_pitch
@@ -146,13 +146,14 @@ def frame(numbers, table, scratch, part, at, out):
             sign = 1.0 - 2.0 * ((row + column) & 1)
             scratch[X_ROW, n], scratch[Y_ROW, n], scratch[SIGN_ROW, n] = x, y, sign
             n += 1
-            if kind == _VIBRATION:
-                out[row, column] = amplitude * swung(1.0, sign * swing)
-            elif kind == _PAGE and numbers[FREE] != 0.0:
+            if is_free:
                 out[row, column] = highest_dot(numbers[CELLS:], table, x, y)
-    if kind == SCENE:
-        show(numbers, table, scratch, at, out)
-    elif kind != _VIBRATION and not seamless(numbers):
+    if numbers[KIND] == SCENE:
+        for k in range(MOST_SIGNALS):
+            scratch[GIVEN_ROW, k] = at[SIGNAL + k]
+        scratch[GIVEN_ROW, MOST_SIGNALS], scratch[GIVEN_ROW, MOST_SIGNALS + 1] = x0, y0
+        show(numbers, table, scratch, at[TIME], out)
+    elif not is_free:
         for which in _columns_of_dots(numbers):
             find_dots(numbers[CELLS:], scratch, n, which)
             _write(numbers, table, part, scratch, 0, columns, out, which)
@@ -165,9 +166,7 @@ def path(numbers, table, scratch, x_mm, out):
     The places of a block are computed by vector instructions, which is several times as fast as
     calling `frame` for each.
     """
-    rows, columns = out.shape[1:]
-    if rows != numbers[ROWS] or columns != numbers[COLUMNS]:
-        raise ValueError("the frames have not the shape of the array")
+    columns = out.shape[2]
     block = scratch.shape[1] // columns
     for first in range(0, x_mm.size, block):
         count = min(block, x_mm.size - first)

@@ -34,11 +34,6 @@ _FAR = 1e30  # stands for infinity
 _NO_CORNER = (-_FAR, *(0.0,) * (CORNER_NUMBERS - 1))
 
 
-def is_open(shape: AnyShape) -> bool:
-    """Tell whether a shape has ends."""
-    return isinstance(shape, StraightLine) or (isinstance(shape, PathShape) and not shape.closed)
-
-
 def cycles_differ(shape: AnyShape) -> bool:
     """Tell whether textures along the contours of a shape have cycles of their own."""
     return len(set(stroke_cycles(shape))) > 1
@@ -46,12 +41,7 @@ def cycles_differ(shape: AnyShape) -> bool:
 
 def segments_of(shape: StraightLine | Polygon | PathShape, *, rounded: bool) -> Iterator[Numbers]:
     """Numbers of the segments of a shape, with those of their corners if these are rounded."""
-    contours: tuple[tuple[Point, ...], ...]
-    if isinstance(shape, PathShape):
-        contours = shape.contours_mm
-    else:
-        line = isinstance(shape, StraightLine)
-        contours = ((shape.start_mm, shape.end_mm) if line else shape.vertices_mm,)
+    contours, closed = shape.outline
     cycles = stroke_cycles(shape) if cycles_differ(shape) else ()
     corners: list[tuple[Numbers, float]] = []
     if rounded and isinstance(shape, Polygon) and shape.join == "rounded":
@@ -63,15 +53,15 @@ def segments_of(shape: StraightLine | Polygon | PathShape, *, rounded: bool) -> 
     for number, points in enumerate(contours):
         texture = (cycles[number].ridge, cycles[number].length) if cycles else (0.0, 0.0)
         straight = list(itertools.starmap(_straight, itertools.pairwise(points)))
-        if not is_open(shape):
+        if closed:
             straight.append(_straight(points[-1], points[0]))
         count = len(straight)
         begin_mm = 0.0
         for i, segment in enumerate(straight):
             half, end_half = (0.0, 0.0), (0.0, 0.0, -_FAR)
-            if i > 0 or not is_open(shape):
+            if i > 0 or closed:
                 half = _half(straight[i - 1], segment)
-            if i < count - 1 or not is_open(shape):
+            if i < count - 1 or closed:
                 end_half = (*_half(segment, straight[(i + 1) % count]), 0.0)
             start, end = _NO_CORNER, _NO_CORNER
             own_mm = begin_mm

@@ -15,12 +15,7 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
 
-_DOUBLE = np.dtype(np.float64)
 _BLOCK = 64  # number of places whose swings stay in the processor's nearest cache
-# No picture moves by itself for longer, since vibration tires the skin (Lévesque 2009, 8.6).
-EXPOSURE_S = 60.0
-# At this frequency a period has twenty samples at 1 kHz: Lévesque 2009, 8.3.2.
-MOST_FREQUENCY_HZ = 50.0
 
 
 class Program:
@@ -104,7 +99,7 @@ class Program:
         x_mm
             Place of the array's centre. A place that is not on the picture gives the idle frame,
             and so does NaN.
-        out : float[rows, columns]
+        out : float64[rows, columns]
             Deflections, 0 … 1.
         y_mm
             Place of the array's centre down the page, which matters where each actuator shows
@@ -134,24 +129,15 @@ class Program:
 
             signalkernels.begin(self.numbers, at)
             signalkernels.compute(self.numbers, at, 0.0)
-        # Kernels are compiled for float64 in one piece alone.
-        fits = out.dtype is _DOUBLE and out.flags.c_contiguous
-        made = out if fits else np.empty(out.shape)
-        self._fill(self.numbers, self.table, self.scratch, part, at, made)
-        if not fits:
-            out[:] = made
+        self._fill(self.numbers, self.table, self.scratch, part, at, out)
 
-    def path(
-        self, x_mm: NDArray[np.float64], out: NDArray[np.float32] | None = None
-    ) -> NDArray[np.float32]:
+    def path(self, x_mm: NDArray[np.float64]) -> NDArray[np.float32]:
         """Fill the frames of a line for many places; much faster than `frame` for each.
 
         Parameters
         ----------
         x_mm : float64[n]
             Places of the array's centre.
-        out : float32[n, rows, columns], optional
-            Array for the frames; a new one is made if it is not given.
 
         Returns
         -------
@@ -161,18 +147,14 @@ class Program:
         Raises
         ------
         ValueError
-            If ``out`` has another shape, or the picture is no line.
+            If the picture is no line.
         """
         from vbraille.render import kernels
 
         if self.kind is not ProgramKind.LINE:
             raise ValueError(f"a {self.kind.name.lower()} has no frames along a line")
         x_mm = np.ascontiguousarray(x_mm, np.float64)
-        shape = (x_mm.size, *self.shape)
-        if out is None:
-            out = np.empty(shape, np.float32)
-        elif out.shape != shape:
-            raise ValueError(f"the frames have shape {out.shape}; it must be {shape}")
+        out = np.empty((x_mm.size, *self.shape), np.float32)
         kernels.path(self.numbers, self.table, self.scratch, x_mm, out)
         return out
 
@@ -262,44 +244,3 @@ def nothing(display: Display) -> Program:
     numbers = head(display, ProgramKind.LINE, places)
     numbers[work.CELLS :][[work.CELL_PITCH, work.DOT_WIDTH, work.APART]] = 1.0
     return Program(numbers, np.zeros(4, np.uint16))
-
-
-def vibration(
-    display: Display,
-    frequency_hz: float = MOST_FREQUENCY_HZ,
-    amplitude: float = 1.0,
-    exposure_s: float = EXPOSURE_S,
-) -> Program:
-    """Make every actuator swing, each against its neighbours, wherever the array is.
-
-    Lévesque 2009, eqs. 8.1 and 8.2.
-
-    Parameters
-    ----------
-    display
-        Display that shows the program.
-    frequency_hz
-        Frequency of the swings, above 0 to 50 Hz.
-    amplitude
-        Share of the full swing, above 0 to 1.
-    exposure_s
-        Time for which it is felt before it fades, in seconds, above 0.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range.
-    """
-    if not 0 < frequency_hz <= MOST_FREQUENCY_HZ:
-        raise ValueError(
-            f"the frequency is {frequency_hz:g} Hz; it must be above 0 to {MOST_FREQUENCY_HZ:g} Hz"
-        )
-    if not 0 < amplitude <= 1:
-        raise ValueError(f"the amplitude is {amplitude:g}; it must be above 0 to 1")
-    if not exposure_s > 0:
-        raise ValueError(f"the exposure is {exposure_s:g} s; it must be above 0")
-    numbers = head(display, ProgramKind.VIBRATION, work.OWN)
-    numbers[work.FREQUENCY] = frequency_hz
-    numbers[work.AMPLITUDE] = amplitude
-    numbers[work.EXPOSURE] = exposure_s
-    return Program(numbers, np.zeros(1, np.uint16))

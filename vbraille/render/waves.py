@@ -13,9 +13,7 @@ _C0, _C1, _C2, _C3, _C4, _C5, _C6, _C7, _C8, _C9, _C10 = (
     (-1) ** n * math.pi ** (2 * n) / math.factorial(2 * n) for n in range(11)
 )
 
-compiled = njit(
-    cache=keep_compiled(), error_model="numpy", fastmath={"contract"}, nogil=True, _nrt=False
-)
+compiled = njit(cache=keep_compiled(), error_model="numpy", fastmath={"contract"}, nogil=True)
 inlined = njit(inline="always", error_model="numpy", fastmath={"contract"})
 
 

@@ -14,8 +14,7 @@ class ProgramKind(IntEnum):
 
     LINE = 0
     PAGE = 1
-    VIBRATION = 2
-    SCENE = 3
+    SCENE = 2
 
 
 # The head, which is alike for every kind; the engine reads it.

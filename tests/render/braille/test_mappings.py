@@ -4,7 +4,6 @@ import pytest
 from tests.render.scenes import DOT_PLACES, cell, frame_at, line
 from tests.shown import LATERO, array_of, from_left
 from vbraille.render import MAPPINGS, STRESS2, VBD, Mapping, single_row
-from vbraille.render.braille.mappings import NONE
 
 # Of each actuator row, far one first: the dot of a cell's left column, the one of its right
 # column (0 for none), and whether it is inverted. Lévesque 2009, fig. 4.5, and its author's
@@ -90,10 +89,6 @@ def shown(masks, mapping, *, array=None, contrast_of=STRESS2, x_mm=0.0):
     return frame_at(renderer, x_mm)
 
 
-def test_all_methods_are_there_under_their_names():
-    assert {name: mapping.name for name, mapping in MAPPINGS.items()} == {n: n for n in TABLES}
-
-
 @pytest.mark.parametrize("name", TABLES)
 def test_the_table_of_each_method(name):
     mapping = MAPPINGS[name]
@@ -136,31 +131,10 @@ def test_rows_that_the_method_does_not_name_rest(name):
     assert np.ptp(columns_over_dots[own]) > 0.1
 
 
-@pytest.mark.parametrize("name", TABLES)
-def test_row_bits_of_every_cell(name):
-    bits = MAPPINGS[name].row_bits()
-    assert (bits.shape, bits.dtype) == ((256, 2), np.uint16)
-    for mask in range(256):
-        for side in (0, 1):
-            rows = [
-                row
-                for row, dots in enumerate(TABLES[name])
-                if dots[side] and mask & cell(dots[side])
-            ]
-            assert bits[mask, side] == sum(1 << row for row in rows)
-
-
 def test_all_methods_show_dots_1_to_6_and_the_one_for_eight_rows_all_dots():
     for name, mapping in MAPPINGS.items():
         more = (7, 8) if name == "eight-dots" else ()
         assert mapping.shown_dots() == cell(1, 2, 3, 4, 5, 6, *more)
-
-
-def test_shown_dots_are_those_in_the_tables():
-    mapping = Mapping("mixed", (NONE, 3, 0), (1, NONE, NONE), (False, False, True))
-    assert mapping.shown_dots() == cell(7, 1, 5)
-    assert mapping.row_bits()[cell(7, 1, 5)].tolist() == [0b110, 0b001]
-    assert mapping.row_bits()[cell(2, 3, 4, 6, 8)].tolist() == [0, 0]
 
 
 @pytest.mark.parametrize(("dot_row", "dots"), [(1, (1, 4)), (2, (2, 5)), (3, (3, 6))])
@@ -174,12 +148,6 @@ def test_a_single_dot_row(dot_row, dots):
         centre_mm = side * VBD.style.geometry.dot_spacing_mm + VBD.style.geometry.dot_width_mm / 2
         frame = shown(line(cell(dot)), mapping, array=VBD.display, contrast_of=VBD, x_mm=centre_mm)
         assert frame[0, 0] == pytest.approx(float(dot in dots), abs=1e-12)
-
-
-@pytest.mark.parametrize("dot_row", [0, 4, -1, 1.5])
-def test_there_are_three_dot_rows_to_choose(dot_row):
-    with pytest.raises(ValueError, match=rf"^dot row is {dot_row}; it must be 1, 2 or 3$"):
-        single_row(dot_row)
 
 
 @pytest.mark.parametrize(

@@ -6,16 +6,6 @@ from vbraille.render import Tuning
 from vbraille.render.braille.style import MOST_TEXTURE_CYCLES
 
 
-def test_defaults():
-    assert Tuning() == Tuning(texture=0.0, contrast=1.0, cycles=7)
-
-
-@pytest.mark.parametrize("name", ["texture", "contrast"])
-@pytest.mark.parametrize("value", [0, 0.0, 0.5, 1, 1.0])
-def test_levels_from_0_to_1(name, value):
-    assert getattr(replace(Tuning(), **{name: value}), name) == value
-
-
 @pytest.mark.parametrize("name", ["texture", "contrast"])
 @pytest.mark.parametrize("value", [-0.001, 1.001, -1, 2, float("inf"), float("nan")])
 def test_levels_out_of_range(name, value):

@@ -16,7 +16,7 @@ from vbraille.render.labels import Assets, Written
 from vbraille.scene.bitmap import WHOLE, Bitmap
 from vbraille.scene.patterns import Image, Label
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.traversal import each
+from vbraille.scene.traversal import each, moved
 
 SIDE_MM = 60
 STRESS2_8X8_ARRAY = STRESS2_8X8.display
@@ -119,3 +119,18 @@ def shown(scene, display, pose):
     program.frame(pose.x_mm, frame, **at)
     np.testing.assert_allclose(frame, twin(scene, display, pose), rtol=0, atol=1e-6)
     return frame
+
+
+_ONE = Display("one", 1, 1, 1.0, 1.0)
+_ASIDE_MM = 100.0  # patterns are moved by, so that all that they are asked for is on the canvas
+
+
+def felt(pattern, x_mm, y_mm=0.0, time_s=0.0):
+    """Deflections that the kernels give one actuator at places."""
+    scene = scene_of(moved(pattern, (_ASIDE_MM, _ASIDE_MM)), side_mm=2000)
+    program, out = compile_scene(scene, _ONE), np.empty((1, 1))
+    found = []
+    for x, y in np.broadcast(x_mm, y_mm):
+        program.frame(x + _ASIDE_MM, out, y_mm=y + _ASIDE_MM, time_s=time_s)
+        found.append(out[0, 0])
+    return np.array(found)

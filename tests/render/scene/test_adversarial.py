@@ -5,14 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from tests.render.scene import twin as reference
-from tests.render.scene.showing import STRESS2_8X8_ARRAY, At, assets_of, poses, scene_of, shown
-from tests.tiers import by_tier, heavy
+from tests.render.scene.showing import STRESS2_8X8_ARRAY, At, poses, scene_of, shown
+from tests.tiers import by_tier
 from vbraille.scene.patterns import (
     Circle,
     Dots,
     Fill,
-    Group,
     Image,
     Label,
     PathShape,
@@ -111,21 +109,6 @@ def test_polygons_of_any_shape(name, stroke, join, rng):
     everywhere(scene, rng, count=by_tier(2, 6, 50))
 
 
-# Every shape with every span is for the longer runs; laws draw both every time.
-@heavy
-@pytest.mark.parametrize("span", ["angle", "square", "edges", "arc"])
-@pytest.mark.parametrize("name", SHAPES)
-def test_markers_of_any_corner(name, span, rng):
-    scene = scene_of(
-        Polygon(
-            vertices_mm=SHAPES[name],
-            stroke=wide(5, along=Along(ridge_mm=1)),
-            markers=VertexMarkers(span=span, angle_deg=180, blend_mm=0.05, plain=True),
-        )
-    )
-    everywhere(scene, rng, count=4)
-
-
 AT_HEARTS = {
     "circle of strokes": Circle(center_mm=(30, 30), radius_mm=3, stroke=ALONG),
     "circle smaller than its stroke": Circle(
@@ -199,11 +182,6 @@ FAR_AWAY = {
 }
 
 
-@pytest.mark.parametrize("name", FAR_AWAY)
-def test_things_whose_middle_is_ten_metres_away(name, rng):
-    everywhere(scene_of(FAR_AWAY[name]), rng)
-
-
 @pytest.mark.parametrize("place", [(9950.0, 9950.0), (9950.0, 30.0)])
 def test_places_ten_metres_away(place, rng):
     x, y = place
@@ -246,50 +224,3 @@ MOVING = {
 @pytest.mark.parametrize("time_s", [HOURS_S, HOURS_S + 1 / 3, 1e-9])
 def test_what_moves_after_hours(name, time_s, rng):
     everywhere(scene_of(MOVING[name]), rng, time_s=time_s, count=4)
-
-
-def test_many_layers_of_everything(rng):
-    parts = [
-        Group(
-            operation=operation,
-            parts=(
-                Circle(
-                    center_mm=(20 + n * 4, 30), radius_mm=8, stroke=ALONG, vibration=Vibration()
-                ),
-                LinearGrating(ridge_mm=2 + n, wave_angle_deg=20 * n),
-                Dots(centers_mm=((20, 20 + n), (35, 40)), dot=DotStyle(radius_mm=4)),
-            ),
-            amplitude=0.8,
-            inverted=n == 2,
-        )
-        for n, operation in enumerate(("overwrite", "multiply", "add", "maximum"))
-    ]
-    everywhere(scene_of(*parts), rng)
-    everywhere(scene_of(*parts, operation="add"), rng)
-    for part in parts:
-        everywhere(scene_of(part), rng, count=4)
-
-
-@pytest.mark.parametrize("outside", [0.0, 0.3])
-@pytest.mark.parametrize("file", ["one.png", "gray.png", "sparse.png", "whole.png", "blank.png"])
-def test_images_on_top_hide_what_is_under_them_and_no_more(file, outside, rng):
-    image = Image(
-        file=file, place_mm=(20, 25), width_mm=22, height_mm=7, outside=outside, amplitude=0.5
-    )
-    scene = scene_of(LinearGrating(ridge_mm=3), image)
-    everywhere(scene, rng)
-    x, y = rng.uniform(0, 60, (2, 500))
-    assets = assets_of(image)
-    at = reference.places(x, y, 0, 0)
-    assert (reference.deflection(image, assets, at) <= reference.mask(image, assets, at)).all()
-
-
-def test_dotted_shapes_with_hardly_room(rng):
-    dots = Dotting(dot=DotStyle(radius_mm=3), separation_mm=4, vertex_vibration=Vibration())
-    for shape in (
-        Circle(center_mm=(30, 30), radius_mm=0.5, dots=dots),
-        StraightLine(start_mm=(30, 30), end_mm=(30.00001, 30), dots=dots),
-        Polygon(vertices_mm=NEEDLE, dots=dots, fill=Fill(texture=Uniform(level=0.5), blended=True)),
-        PathShape(contours_mm=(STEPS,), dots=dots),
-    ):
-        everywhere(scene_of(shape), rng, count=4)

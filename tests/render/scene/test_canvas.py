@@ -6,7 +6,7 @@ import numpy as np
 
 from vbraille.display import Display
 from vbraille.render.compiling import SceneMap, compile_scene
-from vbraille.scene.patterns import Circle, Group, StraightLine
+from vbraille.scene.patterns import Circle, StraightLine
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke, Vibration
 from vbraille.scene.textures import LinearGrating, UniformVibration
@@ -54,19 +54,13 @@ def test_noise_has_the_range_of_the_vibration():
 
 def test_opacity_is_what_hides():
     x, y = np.linspace(0, 60, 61), np.linspace(0, 40, 41)
-    assert np.array_equal(SceneMap(SCENE).opacity(x, y), np.ones((41, 61)))
+    assert np.array_equal(SceneMap(SCENE).deflections(x, y, is_mask=True), np.ones((41, 61)))
     weak = Circle(center_mm=(30.0, 20.0), radius_mm=10.0, stroke=Stroke(amplitude=0.2))
     full = Circle(center_mm=(30.0, 20.0), radius_mm=10.0, stroke=Stroke())
-    of_weak = SceneMap(Scene(canvas=CANVAS, elements=(weak,))).opacity(x, y)
+    of_weak = SceneMap(Scene(canvas=CANVAS, elements=(weak,))).deflections(x, y, is_mask=True)
     of_full = SceneMap(Scene(canvas=CANVAS, elements=(full,))).deflections(x, y)
     assert np.array_equal(of_weak, of_full)
-    both = SceneMap(Scene(canvas=CANVAS, operation="add", elements=(weak, weak))).opacity(x, y)
+    both = SceneMap(Scene(canvas=CANVAS, operation="add", elements=(weak, weak))).deflections(
+        x, y, is_mask=True
+    )
     assert np.allclose(both, np.minimum(2 * of_weak, 1))
-
-
-def test_fine_and_coarse_rasters_agree():
-    whole = SceneMap(Scene(canvas=CANVAS, elements=(Group(parts=SCENE.elements),)))
-    x, y = np.linspace(0, 6, 1200), np.linspace(0, 4, 7)
-    fine = whole.deflections(x, y)
-    assert np.array_equal(fine[:, ::100], whole.deflections(x[::100], y))
-    assert whole.deflections(x[:0], y).shape == (7, 0)

@@ -7,13 +7,6 @@ from tests.render.scene import twin as reference
 from tests.render.scene.scenes import examples, patterns, scenes, seeds
 from tests.render.scene.showing import assets_of, scene_of
 from vbraille.render.compiling import SceneMap
-from vbraille.render.labels import Assets
-
-
-def frame(program, pose):
-    out = np.full(program.shape, np.nan)
-    program.frame(pose.x_mm, out, y_mm=pose.y_mm, theta_rad=pose.theta_rad, time_s=pose.time_s)
-    return out
 
 
 @examples(60)
@@ -37,11 +30,9 @@ def test_a_map_of_opacity_is_what_the_twin_says(pattern, seed):
     assets = assets_of(pattern)
     x, y = np.sort(rng.uniform(0, 60, 13)), rng.uniform(0, 60, 7)
     time_s, parity = float(rng.uniform(0, 10)), int(rng.integers(2))
-    got = SceneMap(scene_of(pattern), assets).opacity(x, y, time_s=time_s, parity=parity)
+    got = SceneMap(scene_of(pattern), assets).deflections(
+        x, y, is_mask=True, time_s=time_s, parity=parity
+    )
     right, down = (grid.ravel() for grid in np.meshgrid(x, y))
     want = reference.opacity(pattern, assets, right, down, parity, time_s)
     np.testing.assert_allclose(got.ravel(), want, rtol=0, atol=1e-6)
-
-
-def test_a_map_of_nothing_is_at_rest():
-    assert not SceneMap(scene_of(), Assets()).deflections(np.arange(5.0), np.arange(3.0)).any()

@@ -11,9 +11,7 @@ import pytest
 from vbraille.display import Display
 from vbraille.render import kernels, work
 from vbraille.render.compiling import compile_scene
-from vbraille.render.labels import Assets
-from vbraille.scene.bitmap import Bitmap
-from vbraille.scene.patterns import Circle, Group, Image, StraightLine, Tile
+from vbraille.scene.patterns import Circle, Group, StraightLine, Tile
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.strokes import Stroke, Vibration
 from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
@@ -76,14 +74,6 @@ def test_a_line_hides_what_is_beneath_it():
 def test_a_texture_on_top_hides_everything():
     below = Circle(center_mm=(50.0, 40.0), radius_mm=5.0, stroke=Stroke())
     assert np.array_equal(frame(compiled(below, Uniform(level=0.5))), np.full((8, 8), 0.5))
-
-
-def test_a_picture_masks_its_texture():
-    image = Image(file="half.png", texture=LinearGrating(ridge_mm=2.0))
-    half = Bitmap(np.full((8, 10), 32_768, np.uint16), (0.0, 0.0), 100.0, 80.0)
-    shown = frame(compiled(image, assets=Assets({image: half})), 51.0)
-    x, _ = actuators(51.0)
-    assert np.allclose(shown, (0.5 - 0.5 * np.cos(np.pi * x)) * 32_768 / 65_535, atol=1e-9)
 
 
 def test_a_tile_is_repeated_in_all_directions():

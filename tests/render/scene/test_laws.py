@@ -7,24 +7,22 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from tests.render.scene import twin as reference
-from tests.render.scene.scenes import KINDS, bounded, examples, numbers, patterns, scenes, seeds
+from tests.render.scene.scenes import KINDS, examples, numbers, patterns, scenes, seeds
 from tests.render.scene.showing import (
     DISPLAYS,
     STRESS2_8X8_ARRAY,
     At,
     actuators,
     assets_of,
-    known_boxes,
     poses,
     scene_of,
     shown,
 )
-from vbraille.scene.bounds import bounds
 from vbraille.scene.joints import axial_cycle
 from vbraille.scene.patterns import Circle, Fill, Group, PathShape, Polygon, StraightLine
 from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, Uniform
@@ -130,27 +128,6 @@ def test_shapes_elsewhere_change_nothing(near, seed, display):
 
 
 @examples(60)
-@given(bounded, bounded, seeds)
-def test_a_sum_is_the_maximum_where_nothing_overlaps(one, other, seed):
-    assets = assets_of(one, other)
-    first = bounds(one, known_boxes(assets))
-    second = bounds(other, known_boxes(assets))
-    assert first is not None
-    assert second is not None
-    assume(not first.is_empty and not second.is_empty)
-    other = moved(other, (first.right - second.left + 0.001, 0.0))
-    rng = np.random.default_rng(seed)
-    for _ in range(2):
-        x, y = rng.uniform(first.right - 4, first.right + 4), rng.uniform(first.top, first.bottom)
-        pose = At(x, y, rng.uniform(0, 6), rng.uniform(0, 5))
-        added, most = (
-            shown(scene_of(one, other, operation=operation, side_mm=300), STRESS2_8X8_ARRAY, pose)
-            for operation in ("add", "maximum")
-        )
-        same(added, most)
-
-
-@examples(60)
 @given(patterns, patterns, seeds, st.booleans())
 def test_a_blend_shows_one_part_at_0_and_the_other_at_1(one, other, seed, second):
     by = Uniform(level=float(second))
@@ -158,38 +135,6 @@ def test_a_blend_shows_one_part_at_0_and_the_other_at_1(one, other, seed, second
     alone = scene_of(other if second else one)
     for pose in some_poses(seed):
         same(shown(blend, STRESS2_8X8_ARRAY, pose), shown(alone, STRESS2_8X8_ARRAY, pose))
-
-
-@examples(60)
-@given(patterns, seeds)
-def test_what_is_inverted_twice_is_as_it_was(pattern, seed):
-    once = Group(operation="maximum", parts=(pattern,), inverted=True)
-    twice = Group(operation="multiply", parts=(once,), inverted=True)
-    for pose in some_poses(seed):
-        same(
-            shown(scene_of(twice), STRESS2_8X8_ARRAY, pose),
-            shown(scene_of(pattern), STRESS2_8X8_ARRAY, pose),
-        )
-
-
-@examples(60)
-@given(st.lists(patterns, min_size=2, max_size=4), seeds, numbers(0, 1))
-def test_operations_are_what_they_say_of_their_parts(parts, seed, share):
-    weights = (share, *[(1 - share) / (len(parts) - 1)] * (len(parts) - 1))
-    for pose in some_poses(seed, 1):
-        single = np.array([shown(scene_of(part), STRESS2_8X8_ARRAY, pose) for part in parts])
-
-        def together(operation, pose=pose, **more):
-            group = Group(operation=operation, parts=tuple(parts), **more)
-            return shown(scene_of(group), STRESS2_8X8_ARRAY, pose)
-
-        same(together("multiply"), np.prod(single, axis=0))
-        same(together("add"), np.minimum(1, single.sum(axis=0)))
-        same(together("maximum"), single.max(axis=0))
-        same(together("weighted", weights=weights), np.tensordot(weights, single, 1))
-        blend = Group(operation="blend", parts=(parts[0], parts[1]), by=parts[-1])
-        want = (1 - single[-1]) * single[0] + single[-1] * single[1]
-        same(shown(scene_of(blend), STRESS2_8X8_ARRAY, pose), want)
 
 
 # Time and place
@@ -271,20 +216,6 @@ def test_moving_the_picture_and_the_array_together_changes_nothing(pattern, move
         same(shown(scene_of(there, side_mm=500), display, other), before, 1e-5)
 
 
-@examples(60)
-@given(patterns, seeds)
-def test_the_same_place_gives_the_same_frame(pattern, seed):
-    scene = scene_of(pattern)
-    first, other = some_poses(seed)
-    before = shown(scene, STRESS2_8X8_ARRAY, first)
-    shown(scene, STRESS2_8X8_ARRAY, other)
-    np.testing.assert_array_equal(shown(scene, STRESS2_8X8_ARRAY, first), before)
-
-
-def test_a_scene_of_nothing_is_at_rest():
-    assert not shown(scene_of(), STRESS2_8X8_ARRAY, At(10, 10, 0, 1)).any()
-
-
 @examples(40)
 @given(patterns, seeds)
 def test_beside_the_canvas_actuators_are_at_rest(pattern, seed):
@@ -293,11 +224,3 @@ def test_beside_the_canvas_actuators_are_at_rest(pattern, seed):
         x, y, _ = actuators(STRESS2_8X8_ARRAY, pose)
         beside = (x < 0) | (x > 60) | (y < 0) | (y > 60)
         assert not shown(scene, STRESS2_8X8_ARRAY, pose).ravel()[beside].any()
-
-
-def test_actuators_lie_where_the_pose_says():
-    x, y, parity = actuators(STRESS2_8X8_ARRAY, At(20, 10, math.pi / 2, 0))
-    # Turned by a quarter against the clock, the right end of a row lies far from the reader.
-    assert (x[7], y[7]) == pytest.approx((20 - 4.9, 10 - 4.2))
-    assert parity[:3].tolist() == [0, 1, 0]
-    assert parity[8] == 1

@@ -73,11 +73,11 @@ def test_the_figure_stands_at_its_place_and_takes_what_it_needs_along():
 def test_a_figure_within_its_canvas_is_not_cut_and_others_are():
     lines = [np.full(8, 63, np.uint8)]
     scene, _ = page_with_figure(lines, STYLE, figure(CIRCLE), (5.0, 0.0))
-    assert scene.elements[1].operation == "overwrite"
+    assert len(scene.elements[1].parts) == 1
     beyond = Circle(center_mm=(5, 20), radius_mm=10, stroke=Stroke())
     for element in (beyond, LinearGrating(ridge_mm=3)):
         scene, _ = page_with_figure(lines, STYLE, figure(element), (5.0, 0.0))
-        assert scene.elements[1].operation == "multiply"
+        assert len(scene.elements[1].parts) == 2
 
 
 def test_a_program_of_both_is_the_page_where_the_figure_is_not_and_the_figure_where_it_is(rng):

@@ -7,12 +7,11 @@ import pytest
 from PIL import Image as Pillow
 
 from tests.render.scene.twin import deflections
-from tests.scene.openlatero.files import grating, scene, texture
+from tests.scene.openlatero.files import scene, texture
 from vbraille.render.labels import Assets
 from vbraille.scene.images import load_bitmaps
 from vbraille.scene.openlatero import read_gen
 from vbraille.scene.patterns import Image
-from vbraille.scene.reading import open_scene
 from vbraille.scene.textures import UniformVibration
 
 WIDE, HIGH = 289.9, 230.1875
@@ -100,11 +99,6 @@ def test_a_plain_texture_makes_it_a_plain_map(folder):
     assert made.texture.amplitude == 0.5
 
 
-def test_what_is_beyond_the_picture_is_kept(folder):
-    made, _ = read(folder, "<imgfile>wide.png</imgfile><default_alpha>0.3</default_alpha>")
-    assert made.outside == 0.3
-
-
 def test_alpha_is_the_mask_where_the_file_says_so(folder):
     made, said = read(folder, '<imgfile type="alpha">clear.png</imgfile>')
     assert made.channel == "alpha"
@@ -138,49 +132,6 @@ def test_a_shape_through_a_mask_is_as_the_file_says(folder):
     made, said = read(folder, "<imgfile>wide.png</imgfile>", '<Pattern type="Circle"/>')
     assert made.texture is not None
     assert "it is the mask of a Circle, as the file says" in said
-
-
-def test_within_a_white_picture_there_is_its_texture_and_nothing_beyond(folder):
-    part = grating(4, 2, angle=30)
-    (folder / "old.gen").write_text(
-        scene(image("<imgfile>wide.png</imgfile><position>10,20</position>", part))
-    )
-    opened = open_scene(folder / "old.gen")
-    assets = Assets(bitmaps=load_bitmaps(opened.resolved, opened.folder))
-    x, y = np.linspace(12, 250, 40), np.linspace(22, 90, 40)
-    through = deflections(opened.resolved, assets, x, y)
-    alone = (folder / "alone.gen", scene(part))
-    alone[0].write_text(alone[1])
-    assert through == pytest.approx(deflections(read_gen(alone[0]).scene, Assets(), x, y))
-    assert not deflections(opened.resolved, assets, [5.0, 100.0], [50.0, 15.0]).any()
-
-
-def test_pixels_are_where_they_were_to_the_step_between_neighbours(folder):
-    """The nearest pixel there, and bilinear between their middles here."""
-    columns, rows = 64, 32
-    across = np.linspace(0, 200, columns)[None, :] + np.linspace(0, 40, rows)[:, None]
-    shades = np.rint(across).astype(np.uint8)
-    Pillow.fromarray(shades).save(folder / "ramp.png")
-    place, size = (12.5, 30.25), (96.0, 40.0)
-    (folder / "old.gen").write_text(
-        scene(
-            image(
-                "<imgfile>ramp.png</imgfile><position>12.5,30.25</position>"
-                '<width units="mm">96</width><height units="mm">40</height>',
-                texture("Plain"),
-            )
-        )
-    )
-    opened = open_scene(folder / "old.gen")
-    assets = Assets(bitmaps=load_bitmaps(opened.resolved, opened.folder))
-    rng = np.random.default_rng(3)
-    # Within the middles of the outermost pixels, beyond which the picture ends there.
-    x, y = rng.uniform(place[0] + 1, place[0] + 95, 200), rng.uniform(place[1] + 1, 69, 200)
-    column = np.floor((x - place[0]) / size[0] * columns).astype(int)
-    row = np.floor((y - place[1]) / size[1] * rows).astype(int)
-    steps = (200 / (columns - 1) + 40 / (rows - 1)) / 2 + 1
-    felt = deflections(opened.resolved, assets, x, y)
-    assert np.abs(felt - shades[row, column] / 255).max() <= steps / 255
 
 
 def shown(folder, text, x, y):

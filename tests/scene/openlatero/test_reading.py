@@ -11,13 +11,12 @@ from tests.scene.openlatero.files import (
     stroke,
     swings,
     texture,
-    waves,
 )
 from vbraille.errors import InputError
 from vbraille.scene.openlatero import read_gen
-from vbraille.scene.patterns import Circle, Group, PathShape, StraightLine, Tile
-from vbraille.scene.strokes import Along, Stroke, Vibration
-from vbraille.scene.textures import AxialGrating, LinearGrating, Uniform
+from vbraille.scene.patterns import Circle, PathShape, Tile
+from vbraille.scene.strokes import Stroke, Vibration
+from vbraille.scene.textures import LinearGrating, Uniform
 
 
 def said(found):
@@ -74,14 +73,6 @@ def test_an_operation_may_be_text_as_in_old_files(read):
 
 def test_a_group_without_an_operation_is_a_maximum(read):
     assert read(circle(), line(), operation="").scene.operation == "maximum"
-
-
-def test_the_third_of_a_blend_weighs_the_first_which_is_our_second(read):
-    (group,) = read(circle(), line(), grating(), operation="<operation>blend</operation>") \
-        .scene.elements  # fmt: skip
-    assert isinstance(group, Group)
-    assert [type(part) for part in group.parts] == [StraightLine, Circle]
-    assert isinstance(group.by, LinearGrating)
 
 
 DECIMALS = [
@@ -162,20 +153,6 @@ def test_changes_of_tiles_are_as_the_file_says_or_as_they_are_shown(read):
     assert (tile.amplitude, tile.inverted) == (0.5, True)
     (tile,) = read(text, as_shown=True).scene.elements
     assert (tile.amplitude, tile.inverted) == (1.0, False)
-
-
-def test_an_outline_without_room_is_thinner_or_as_shown_nothing(read):
-    text = line(stroke(4, "<fill><gutter>yes</gutter></fill>", edge=1.5))
-    (made,) = read(text).scene.elements
-    assert made.stroke == Stroke(width_mm=4, edge_mm=1, outlined=True)
-    assert read(text, as_shown=True).scene.elements == ()
-
-
-def test_textures_along_strokes_are_not_fitted(read):
-    (made,) = read(circle(stroke(9, f"<fill>{waves(3, 1)}</fill>"))).scene.elements
-    assert made.stroke.along == Along(ridge_mm=3, gap_mm=1, whole_cycles=False)
-    (spokes,) = read(texture("AxialGrating")).scene.elements
-    assert spokes == AxialGrating(center_mm=(0, 0), ridge_deg=36, whole_cycles=False)
 
 
 def test_a_scene_that_is_no_group_is_shown(read):

@@ -204,17 +204,21 @@ class BrailleStyle:
         >>> VBD.style.replace(texture=0.5).tuning
         Tuning(texture=0.5, contrast=1.0, cycles=7)
         """
-        others: dict[str, Any] = {**changes}
-        turned = {name: _number(name, others.pop(name)) for name in _TUNED if name in changes}
-        lengths = {name: _number(name, others.pop(name)) for name in _LENGTHS if name in changes}
-        for name, value in others.items():
-            _check_field(name, value)
+        for name, value in changes.items():
+            if name not in (*_KINDS, *_TUNED, *_LENGTHS):
+                names = (*_KINDS, *_TUNED, *_LENGTHS)
+                raise InputError(f"a style has no {name}{nearest(name, names)}")
+            kinds, wanted = _KINDS.get(name, (Real, "a number"))
+            if not isinstance(value, kinds):
+                raise InputError(f"{name} is {value!r}; it must be {wanted}")
+        own: dict[str, Any] = {name: changes.get(name, getattr(self, name)) for name in _KINDS}
         try:
-            tuning = replace(others.pop("tuning", self.tuning), **turned)
-            geometry = replace(others.pop("geometry", self.geometry), **lengths)
+            for part, names in (("tuning", _TUNED), ("geometry", _LENGTHS)):
+                given = {name: changes[name] for name in names if name in changes}
+                own[part] = replace(own[part], **given)
         except ValueError as error:
             raise InputError(str(error)) from None
-        return replace(self, tuning=tuning, geometry=geometry, **others)
+        return replace(self, **own)
 
     def rows_on(self, display: Display) -> slice:
         """Tell which rows of a display the mapping takes.
@@ -255,8 +259,6 @@ class BrailleStyle:
         self,
         lines: Sequence[NDArray[np.uint8]],
         display: Display,
-        *,
-        hysteresis: float | None = None,
     ) -> Program:
         """Compile a page of lines, one below the other.
 
@@ -266,29 +268,18 @@ class BrailleStyle:
             Dot masks of each line; they need not be of one length.
         display
             Display that the page is shown on.
-        hysteresis
-            Distance in y between going to the next line and coming back, in line pitches, 0 to 1;
-            None for the band of the style's `Straying`.
 
         Raises
         ------
         ValueError
-            If the mapping needs more rows than the display has, there is no line, or the
-            hysteresis is out of range.
+            If the mapping needs more rows than the display has, or there is no line.
         """
         if not lines:
             raise ValueError("a page of no lines cannot be shown")
-        hysteresis = self.straying.band if hysteresis is None else hysteresis
-        if not 0 <= hysteresis <= 1:
-            raise ValueError(f"the hysteresis is {hysteresis:g}; it must be 0 to 1 line pitches")
-        return self._compile(lines, display, ProgramKind.PAGE, hysteresis)
+        return self._compile(lines, display, ProgramKind.PAGE)
 
     def _compile(
-        self,
-        lines: Sequence[NDArray[np.uint8]],
-        display: Display,
-        kind: ProgramKind,
-        hysteresis: float = 0.0,
+        self, lines: Sequence[NDArray[np.uint8]], display: Display, kind: ProgramKind
     ) -> Program:
         # This import compiles the kernels, which a command that renders nothing must not wait for.
         from vbraille.render.program import Program, head
@@ -300,7 +291,7 @@ class BrailleStyle:
         cells, table = pack_cells(lines, self, bits, (0.0, down_mm, 0.0))
         numbers = head(display, kind, work.CELLS, geometry.line_pitch_mm / 2)
         numbers[work.TILT] = MOST_TILT_RAD
-        numbers[work.HYSTERESIS], numbers[work.FREE] = hysteresis, is_free
+        numbers[work.HYSTERESIS], numbers[work.FREE] = self.straying.band, is_free
         idle, gain = np.zeros((2, display.rows))
         idle[own] = self.mapping.idle()
         gain[own] = self.tuning.contrast * (1 - 2 * idle[own])
@@ -397,31 +388,15 @@ def _coefficients(profile: Profile, tuning: Tuning) -> NDArray[np.float64]:
 
 
 # What the fields of a style are, where a program may give something else, and where to find them.
-_KINDS: dict[str, tuple[tuple[type, ...], str]] = {
-    "profile": ((Profile,), "a Profile, such as vbraille.VBD.style.profile"),
-    "mapping": ((Mapping,), "one of vbraille.MAPPINGS, such as vbraille.MAPPINGS['sheared']"),
-    "geometry": ((Geometry,), "a vbraille.Geometry"),
-    "tuning": ((Tuning,), "a vbraille.Tuning"),
-    "first_row": ((Integral, type(None)), "a row, from 0, or None"),
-    "straying": ((Straying,), "a vbraille.Straying"),
+_KINDS: dict[str, tuple[Any, str]] = {
+    "profile": (Profile, "a Profile, such as vbraille.VBD.style.profile"),
+    "mapping": (Mapping, "one of vbraille.MAPPINGS, such as vbraille.MAPPINGS['sheared']"),
+    "geometry": (Geometry, "a vbraille.Geometry"),
+    "tuning": (Tuning, "a vbraille.Tuning"),
+    "first_row": (Integral | None, "a row, from 0, or None"),
+    "straying": (Straying, "a vbraille.Straying"),
 }
 
 
 _TUNED = [field.name for field in fields(Tuning)]
 _LENGTHS = [field.name for field in fields(Geometry)]
-
-
-def _number(name: str, value: object) -> Any:
-    """A value of the tuning or the geometry; InputError if it is no number."""
-    if not isinstance(value, Real):
-        raise InputError(f"{name} is {value!r}; it must be a number")
-    return value
-
-
-def _check_field(name: str, value: object) -> None:
-    """Raise InputError if a style has no such field, or it cannot have such a value."""
-    if name not in _KINDS:
-        raise InputError(f"a style has no {name}{nearest(name, (*_KINDS, *_TUNED, *_LENGTHS))}")
-    kinds, wanted = _KINDS[name]
-    if not isinstance(value, kinds):
-        raise InputError(f"{name} is {value!r}; it must be {wanted}")

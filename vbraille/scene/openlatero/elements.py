@@ -9,6 +9,7 @@ import math
 import re
 from collections.abc import Callable
 from contextlib import suppress
+from copy import copy
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -73,6 +74,8 @@ class Context:
         What is said about the file.
     signals
         Signals of the scene, as they come.
+    usual
+        Values of elements that are not there, by their names and rows.
     made
         Patterns that were made, with the lines of their elements, by their ids.
     """
@@ -81,6 +84,7 @@ class Context:
     as_shown: bool
     remarks: Remarks = field(default_factory=Remarks)
     signals: dict[str, AnySignal] = field(default_factory=dict)
+    usual: dict[tuple[str, Row], Any] = field(default_factory=dict)
     made: dict[int, tuple[AnyPattern, int]] = field(default_factory=dict)
 
     def signal(self, name: str, signal: AnySignal) -> str:
@@ -189,7 +193,7 @@ class Element:
                 setattr(self, name, [_value(self, xml, row._replace(kind=kind)) for xml in written])
                 continue
             self._pass_over(written[1:], "another {} is ignored, since the first counts")
-            value = _value(self, written[0] if written else etree.Element(name), row)
+            value = _value(self, written[0], row) if written else self._usual(name, row)
             setattr(self, name, value)
             if row.here:
                 self.here[row.here] = value
@@ -197,6 +201,20 @@ class Element:
                 self.remarks = Remarks()  # no more is said of what is off
         for written in found.values():
             self._pass_over(written, "{} is not known here, and ignored")
+
+    def _usual(self, name: str, row: Row) -> Any:
+        """Value of an element that is not there, which is made once; a part stands at this one."""
+        from lxml import etree
+
+        known = self.context.usual
+        if (name, row) not in known:
+            known[name, row] = _value(self, etree.Element(name), row)
+        value = known[name, row]
+        if isinstance(value, Element):
+            value = copy(value)
+            value.owner, value.line, value.remarks = self.owner, self.line, self.remarks
+            value.path = f"{self.path} {name}".strip()
+        return value
 
     def _pass_over(self, written: list[Any], text: str) -> None:
         for xml in written:
