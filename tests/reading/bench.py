@@ -7,6 +7,7 @@ from pathlib import Path
 from vbraille.layout import Layout, cells_per_line
 from vbraille.reading.device import ReadingDevice
 from vbraille.reading.exploration import Exploration
+from vbraille.reading.outputs import Console
 from vbraille.reading.places import Places
 from vbraille.reading.reader import Reader
 from vbraille.render import STRESS2, STRESS2_8X8
@@ -17,11 +18,12 @@ from vbraille.translate import Book, BrailleTable, text_source
 ONE, TWO = STRESS2, STRESS2_8X8
 
 
-class Heard:
+class Heard(Console):
     """An output that keeps what it is told."""
 
     def __init__(self):
-        self.said, self.cues, self.shown = [], [], 0
+        super().__init__()
+        self.said, self.cues = [], []
 
     def say(self, sentence, cue=None):
         if sentence:
@@ -29,15 +31,6 @@ class Heard:
         self.cues.append(cue)
 
     def show(self, _what):
-        self.shown += 1
-
-    def close(self):
-        pass
-
-    def typing(self, question, text):
-        pass
-
-    def end_typing(self):
         pass
 
 

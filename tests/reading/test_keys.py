@@ -103,9 +103,3 @@ def test_a_prompt_brings_what_was_typed_before():
     assert prompt.press("up") == prompt.press("up") == "older"
     prompt.press("down"), prompt.press("down")
     assert prompt.text == ""
-
-
-@pytest.mark.parametrize("key", ["escape", "ctrl-c"])
-def test_a_prompt_is_left_without_an_answer(key):
-    with pytest.raises(KeyError):
-        Prompt("question", print).press(key)

@@ -81,12 +81,6 @@ def test_a_tuning_is_undone_and_refused_in_one_sentence():
         assert reading.reader.style.geometry.cell_gap_mm > style.geometry.cell_gap_mm
 
 
-def test_only_one_line_has_no_straying():
-    with Reading("one", hand="sweep:1") as reading:
-        for key in "=()":
-            assert reading.press(key) == ["only one line is shown; nothing to change"]
-
-
 def test_a_change_by_a_key_fades_and_never_jumps():
     with Reading(WORDS, hand="sweep:1") as reading:
         reading.finger(60.0)

@@ -62,11 +62,6 @@ def test_the_way_back_is_the_way_there(source):
             assert book.line == before, way
 
 
-def test_a_jump_is_said_whatever_is_echoed(source):
-    with reading(source, echo="text") as book:
-        assert book.press("e") == ["heading level 2: Two"]
-
-
 def test_a_note_is_followed_and_left(source):
     with reading(source) as book:
         book.press("k")

@@ -77,7 +77,7 @@ REFUSED = {
     ),
     "spokes that fade over no length": (
         element("axial-grating", "center_mm = [1, 1]", "ridge_deg = 9", "fade_mm = [0, 5e-324]"),
-        "line 8: fade is from a length to the same; set the second larger",
+        "line 8: fade is from a smaller to a larger length, from 0 to 100 mm",
     ),
     "dots that fill the memory": (
         element(

@@ -44,6 +44,7 @@ _TRIP_PATIENCE_S = 0.25
 _SWING_S = 0.25
 _HELD, _HOLD_S = 0.3, 0.1  # how far actuators go before a watchdog is left without frames
 _MOST_OF_TICK = 0.5  # for a driver's read and write together, as a share of a tick
+_ALIKE = 20  # first characters in which sentences on one kind of fault are alike
 _PARTS = 5  # frames of which a line takes a part at first
 _TICK = np.dtype(
     [
@@ -131,22 +132,21 @@ class Watch:
     def __init__(self, device: Device, clock: Clock) -> None:
         self._device, self._clock = device, clock
         self._spent_ns: dict[str, list[int]] = {"read": [], "write": []}
-        self._found: dict[str, str] = {}
-        self._last = Pose(-(1 << 62), math.nan)
-        self._last_ns = 0
+        self.found: dict[str, str] = {}
+        self._last, self._last_ns = Pose(-(1 << 62), math.nan), 0
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._device, name)
 
-    def faults(self, *, of_calls: bool = True) -> list[str]:
+    def faults(self) -> list[str]:
         """Clauses on what was wrong with the driver so far, each kind of fault once."""
         period_ms = 1e3 / self._device.display.rate_hz
         median_ms = {name: np.median(ns or [0]) / 1e6 for name, ns in self._spent_ns.items()}
-        found = list(self._found.values())
-        if of_calls and sum(median_ms.values()) > _MOST_OF_TICK * period_ms:
+        if sum(median_ms.values()) > _MOST_OF_TICK * period_ms:
             told = " and ".join(f"its {name} takes {ms:.2f} ms" for name, ms in median_ms.items())
-            found.append(f"{told}, of the {period_ms:g} ms that a tick has; neither may wait")
-        return found
+            wrong = f"{told}, of the {period_ms:g} ms that a tick has; neither may wait"
+            self.found.setdefault("slow", wrong)
+        return list(self.found.values())
 
     def write(self, frame: NDArray[np.float64]) -> bool:
         """Send a frame."""
@@ -157,13 +157,9 @@ class Watch:
         sample: object = self._timed("read")
         if sample is None:
             return None
-        if not isinstance(sample, Pose):
-            wrong = f"its read gives {sample!r}, where it must give a Pose or None"
-            self._found.setdefault("kind", wrong)
-            return None
-        if not all(map(math.isfinite, sample)):
-            wrong = f"its read gives a place that is no number ({sample})"
-            self._found.setdefault("number", wrong)
+        if not isinstance(sample, Pose) or not all(map(math.isfinite, sample)):
+            wrong = f"its read gives {sample!r}, where it must give a Pose of numbers or None"
+            self.found.setdefault("kind", wrong)
             return None
         device, last, now_ns = self._device, self._last, self._clock.now_ns()
         turned = sample.theta_rad and not device.display.turns
@@ -171,28 +167,19 @@ class Watch:
         elapsed_s = max((now_ns - self._last_ns) / NS_PER_S, 1 / device.display.rate_hz)
         # The first pose follows none: NaN is no jump.
         far_mm = max(abs(sample.x_mm - last.x_mm), abs(sample.y_mm - last.y_mm))
-        for kind, is_wrong, wrong in (
-            (
-                "placing",
-                device.placing is not Placing.DONE,
-                "its read gives a place while it waits to be shown one; it must give None",
+        wrong = {
+            "its read gives a place while it waits to be shown one; it must give None": (
+                device.placing is not Placing.DONE
             ),
-            (
-                "angle",
-                turned,
-                f"its read gives an angle of {sample.theta_rad:g} rad, and its Display has no "
-                f"turns=True",
-            ),
-            ("clock", back_ms > 0, f"its clock goes back, once by {back_ms:g} ms"),
-            (
-                "jump",
-                far_mm > JUMP_MM_S * elapsed_s,
-                f"its carriage jumps, once by {far_mm:.4g} mm in {1e3 * elapsed_s:.3g} ms, faster "
-                f"than any hand",
-            ),
-        ):
+            f"its read gives an angle of {sample.theta_rad:g} rad, and its Display has no "
+            f"turns=True": turned,
+            f"its clock goes back, once by {back_ms:g} ms": back_ms > 0,
+            f"its carriage jumps, once by {far_mm:.4g} mm in {1e3 * elapsed_s:.3g} ms, faster than "
+            f"any hand": far_mm > JUMP_MM_S * elapsed_s,
+        }
+        for sentence, is_wrong in wrong.items():
             if is_wrong:
-                self._found.setdefault(kind, wrong)
+                self.found.setdefault(sentence[:_ALIKE], sentence)
         self._last, self._last_ns = sample, now_ns
         return sample._replace(theta_rad=0.0) if turned else sample
 
@@ -292,38 +279,30 @@ class _Check:
         for name, count in found.counts.items():
             self._say(f"{name}: {count}")
             found.wrong += [f"{name}: {count}"] * (count > _MOST_FAULTS)
-        self._say_notes(device.take_events())
+        notes = told(device.take_events())
         found.wrong += [*self._watchdog(), *self._watch.faults()]
-        events = device.take_events()  # its trips were asked for
-        self._say_notes(event for event in events if not isinstance(event, WatchdogTripped))
-        found.wrong += [*finishes_parts(device), *self._end()]
-        verdict = f"not fit to be read on: {'; '.join(found.wrong)}" if found.wrong else self._fit()
-        self._say(f"verdict: {verdict}")
-        return found
-
-    def _fit(self) -> str:
-        untold = ["what it has taken"] * (not self._device.acknowledges)
-        untold += ["its watchdog"] * (self._device.watchdog_trips is None)
-        but = f", but {' and '.join(untold)} could not be tested" if untold else ""
-        return f"fit to be read on{but}"
-
-    def _say_notes(self, events: Any) -> None:
-        for sentence in told(events):
+        # Its trips were asked for.
+        notes += told(e for e in device.take_events() if not isinstance(e, WatchdogTripped))
+        for sentence in notes:
             self._say(sentence)
-
-    def _end(self) -> list[str]:
-        """Let the device go, which its driver may fail at."""
+        found.wrong += finishes_parts(device)
         try:
-            self._device.close()
-        except Exception as fault:
-            return [f"its driver cannot let it go ({type(fault).__name__}: {fault})"]
-        return []
+            device.close()
+        except Exception as fault:  # of a driver
+            wrong = f"its driver cannot let it go ({type(fault).__name__}: {fault})"
+            found.wrong.append(wrong)
+        untold = ["what it has taken"] * (not device.acknowledges)
+        untold += ["its watchdog"] * (device.watchdog_trips is None)
+        but = f", but {' and '.join(untold)} could not be tested" if untold else ""
+        not_fit = f"not fit to be read on: {'; '.join(found.wrong)}"
+        self._say(f"verdict: {not_fit if found.wrong else f'fit to be read on{but}'}")
+        return found
 
     def _wait_for_place(self) -> None:
         """Wait for any place, or a wrong one: frames are not taken without one."""
         device, clock = self._device, self._clock
         begun_ns, asked = clock.now_ns(), False
-        while device.read() is None and not self._watch.faults(of_calls=False):
+        while device.read() is None and not self._watch.found:
             if device.placing is Placing.STOP and not self._shown:
                 device.set_zero()
                 self._shown = True
@@ -402,7 +381,7 @@ class _Check:
         }
         found.clock_s = float(np.median(passed["device_ns"] / np.maximum(passed["came_ns"], 1)))
 
-    def _rate(self) -> list[str]:
+    def _rate(self) -> Iterator[str]:
         found = self._found
         self._say(f"rate: {self._rate_hz:g} Hz, {found.late} of {found.ticks} ticks late")
         median_us, most_us = found.work_us
@@ -412,80 +391,76 @@ class _Check:
             f"{found.device_ms:.1f} ms, the line by {found.line_ms:.1f} ms"
         )
         if found.held_ms:
-            return [f"the line holds bytes back for {found.held_ms:.0f} ms; {_LATENCY}"]
-        if found.late / found.ticks > _MOST_LATE:
-            return [f"{found.late / found.ticks:.1%} of the ticks come late on this computer"]
-        return []
+            yield f"the line holds bytes back for {found.held_ms:.0f} ms; {_LATENCY}"
+        elif found.late / found.ticks > _MOST_LATE:
+            yield f"{found.late / found.ticks:.1%} of the ticks come late on this computer"
 
-    def _time(self) -> list[str]:
+    def _time(self) -> Iterator[str]:
         clock_s = self._found.clock_s
         if clock_s is None:
-            return ["it told neither its time nor its place"]
+            yield "it told neither its time nor its place"
+            return
         self._say(
             f"clock: {clock_s:.3f} s pass on it in a second, {1 - _MOST_CLOCK:g} to "
             f"{1 + _MOST_CLOCK:g} s are allowed"
         )
-        if abs(clock_s - 1) <= _MOST_CLOCK:
-            return []
-        return [f"its clock goes {clock_s:.2f} times as fast as it should"]
+        if abs(clock_s - 1) > _MOST_CLOCK:
+            yield f"its clock goes {clock_s:.2f} times as fast as it should"
 
-    def _place(self) -> list[str]:
+    def _place(self) -> Iterator[str]:
         info, x_mm = self._device.display, self._found.x_mm
         if self._shown or x_mm is None:
             why = f"its reader must show it {shown_place(info)}" if self._shown else "none was told"
             self._say(f"place: not tested, since {why}")
-            return []
+            return
         edge = "left edge" if info.height_mm else "left stop"
         low_mm, high_mm = (round(mm + info.span_mm / 2, 1) + 0.0 for mm in x_mm)
         self._say(
             f"place: {low_mm:.1f} to {high_mm:.1f} mm from the {edge}, of {info.travel_mm:g} mm"
         )
-        for mm in (low_mm, high_mm):
-            if not -_PLACE_SLACK_MM <= mm <= info.travel_mm + _PLACE_SLACK_MM:
-                return [
-                    f"its carriage is at {mm:.1f} mm from the {edge}, where it cannot be; see to "
-                    f"{shown_place(info)}, its counts and their sign"
-                ]
-        return []
+        off_mm = low_mm if low_mm < -_PLACE_SLACK_MM else high_mm
+        if not -_PLACE_SLACK_MM <= off_mm <= info.travel_mm + _PLACE_SLACK_MM:
+            yield (
+                f"its carriage is at {off_mm:.1f} mm from the {edge}, where it cannot be; see to "
+                f"{shown_place(info)}, its counts and their sign"
+            )
 
-    def _round_trips(self) -> list[str]:
+    def _round_trips(self) -> Iterator[str]:
         if not self._device.acknowledges:
             self._say("round trip: not tested, since this device does not say what it has taken")
-            return []
-        if not self._found.round_trips_ms:
+        elif not self._found.round_trips_ms:
             self._say("round trip: none, for no frame was acknowledged")
-            return ["it acknowledges none of the frames that it is sent"]
-        low, median, high = self._found.round_trips_ms
-        self._say(f"round trip: median {median:.2f} ms, 98 % within {low:.2f} to {high:.2f} ms")
-        if median <= _MOST_ROUND_TRIP_MS or self._found.held_ms:
-            return []
-        return [f"a round trip takes {median:.1f} ms, so the line holds bytes back; {_LATENCY}"]
+            yield "it acknowledges none of the frames that it is sent"
+        else:
+            low, median, high = self._found.round_trips_ms
+            self._say(f"round trip: median {median:.2f} ms, 98 % within {low:.2f} to {high:.2f} ms")
+            if median > _MOST_ROUND_TRIP_MS and not self._found.held_ms:
+                took = f"a round trip takes {median:.1f} ms"
+                yield f"{took}, so the line holds bytes back; {_LATENCY}"
 
-    def _watchdog(self) -> list[str]:
+    def _watchdog(self) -> Iterator[str]:
         """Leave the device without frames several times, and see how long it takes to say so."""
         if self._device.watchdog_trips is None:
             self._say("watchdog: not tested, since this device does not tell of one")
-            return []
+            return
         self._say("watchdog: the device is sent nothing now, so that it trips")
         trips = self._found.trips_ms = [self._trip_ms() for _ in range(_TRIPS)]
         tripped = [ms for ms in trips if ms is not None]
         if not tripped:
             self._say("watchdog: no trip was reported")
-            return ["its watchdog does not trip when no frame comes; do not read on it"]
+            yield "its watchdog does not trip when no frame comes; do not read on it"
+            return
         after_ms = float(np.median(tripped))
         self._say(
             f"watchdog: tripped {len(tripped)} of {_TRIPS} times, {after_ms:.1f} ms after the last "
             f"frame, and so at rest after {after_ms + RAMP_MS:.1f} ms; {REST_MS} ms are promised"
         )
         if len(tripped) < _TRIPS:
-            return [f"its watchdog trips {len(tripped)} of {_TRIPS} times that no frame comes"]
-        early = after_ms < _EARLIEST_TRIP_MS
-        if not early and after_ms + RAMP_MS <= REST_MS + _REPORT_MS:
-            return []
-        how = "early" if early else "late"
-        return [
-            f"its watchdog trips after {after_ms:.0f} ms, too {how}; {WATCHDOG_MS} ms are right"
-        ]
+            yield f"its watchdog trips {len(tripped)} of {_TRIPS} times that no frame comes"
+        elif not _EARLIEST_TRIP_MS <= after_ms <= REST_MS - RAMP_MS + _REPORT_MS:
+            how = "early" if after_ms < WATCHDOG_MS else "late"
+            when = f"its watchdog trips after {after_ms:.0f} ms, too {how}"
+            yield f"{when}; {WATCHDOG_MS} ms are right"
 
     def _trip_ms(self) -> float | None:
         """Send nothing, with the actuators off their rest, until the device's watchdog trips."""

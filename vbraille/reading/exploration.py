@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Button, Knob, placing_sentence
@@ -13,24 +13,11 @@ from vbraille.reading.device import POLL_S, HostDiedError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
-    from typing import Protocol
 
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.explored import Explored
     from vbraille.reading.keys import Keyboard
     from vbraille.reading.outputs import Console
-
-    class Source(Protocol):
-        """Source of keys, beside the terminal."""
-
-        def pressed(self, what: Explored) -> list[str]:
-            """Keys since the last call, as names of `vbraille.reading.commands.bindings`."""
-            ...
-
-        def rest(self) -> None:
-            """Show nothing until the next call, since the program is stopped."""
-            ...
-
 
 _SETTLED_S = 0.3  # a knob that no hand has turned for so long is left where it stands
 _STOPPED = "stopped: the array rests; fg goes on"
@@ -50,7 +37,8 @@ class Exploration:
     console
         Where a line that is typed is shown.
     sources
-        Where else keys come from, such as a conventional display.
+        Outputs that keys come from, too: ``pressed(what)`` names those since the last call, and
+        ``rest()`` has them show nothing until then.
     own
         Names of commands by keys of one's own, for a book.
     """
@@ -61,7 +49,7 @@ class Exploration:
         device: ReadingDevice,
         keyboard: Keyboard,
         console: Console,
-        sources: Sequence[Source] = (),
+        sources: Sequence[Any] = (),
         own: Mapping[str, str] | None = None,
     ) -> None:
         self._outer, self._device = what, device

@@ -239,9 +239,8 @@ class Picture(Explored):
         self._y_mm *= zoom / self.aperture.zoom
         self._goal = None
         self._take(*made)
-        zoomed = self.aperture.zoomed(zoom, at_mm)
-        whole = zoom == 1.0 and zoomed.is_whole
-        self._look_from(Aperture(self.aperture.reach_mm) if whole else zoomed)
+        whole = Aperture(self.aperture.reach_mm)
+        self._look_from(whole if zoom == 1.0 else self.aperture.zoomed(zoom, at_mm))
 
     # Where the hand is
 

@@ -292,7 +292,9 @@ class Reader(Surface):
             self._arrive()
         if followed.reached:
             self.say("", self._end_cue())
-        missed = not self.attended and self._hand_done(ticks[-1])  # the end, between two ticks
+        tick, alone = ticks[-1], self.device.hand_done and not self.attended
+        felt = int(tick["line"]) == self.number and not int(tick["flags"]) & HELD
+        missed = alone and felt  # the end, between two ticks
         if missed and self.device.once:
             self.done = True
         elif missed or (
@@ -304,10 +306,6 @@ class Reader(Surface):
             for sentence in self._watch.watch(ticks, reached=self.reached, patient=patient):
                 self.say(sentence)
             self.hopeless = self._watch.hopeless
-
-    def _hand_done(self, tick: np.void) -> bool:
-        felt = int(tick["line"]) == self.number and not int(tick["flags"]) & HELD
-        return felt and self.device.hand_done
 
     def _end_cue(self) -> Cue:
         following = self.beside(1)

@@ -155,7 +155,7 @@ def check_scene(opened: OpenedScene, known: Boxes) -> SceneReport:
         for number, (wrote, shown) in enumerate(zip(written.elements, scene.elements, strict=True))
     )
     return SceneReport(
-        kinds=dict(sorted(counts.items(), key=lambda item: (-item[1], item[0]))),
+        kinds=dict(counts.most_common()),
         elements=elements,
         textures=_texture_count(scene),
         advice=(*_advice(scene, elements, known), *_signal_advice(opened)),

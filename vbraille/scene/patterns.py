@@ -95,12 +95,8 @@ class Dots(Pattern, frozen=True, kw_only=True, tag="dots"):
             raise ValueError("centers are missing; give at least one")
 
 
-class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
-    """Dots where a grayscale image has blobs: Lévesque 2009, 6.3.1 and eq. 6.1.
-
-    A blob is a connected set of bright pixels. Its dot stands at its centre of mass and has its
-    largest gray as amplitude. How a blob becomes a dot is not in the source; this is ours to
-    choose.
+class FromFile(Pattern, frozen=True, kw_only=True):
+    """Base of patterns that are made from a picture in a file.
 
     Parameters
     ----------
@@ -111,6 +107,32 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
     width_mm, height_mm
         Size on the canvas; if one of them is left out, it follows from the other and from the
         picture's shape.
+
+    Raises
+    ------
+    ValueError
+        If the file is none of this machine, or a number is out of range.
+    """
+
+    file: str
+    place_mm: Point = (0.0, 0.0)
+    width_mm: Size | None = None
+    height_mm: Size | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_file(self.file)
+
+
+class ImageDots(FromFile, frozen=True, kw_only=True, tag="image-dots"):
+    """Dots where a grayscale image has blobs: Lévesque 2009, 6.3.1 and eq. 6.1.
+
+    A blob is a connected set of bright pixels. Its dot stands at its centre of mass and has its
+    largest gray as amplitude. How a blob becomes a dot is not in the source; this is ours to
+    choose.
+
+    Parameters
+    ----------
     threshold
         Gray, from 0 to 1, above which a pixel belongs to a blob.
     by_area
@@ -128,18 +150,10 @@ class ImageDots(Pattern, frozen=True, kw_only=True, tag="image-dots"):
         If the file is none of this machine, or a number is out of range.
     """
 
-    file: str
-    place_mm: Point = (0.0, 0.0)
-    width_mm: Size | None = None
-    height_mm: Size | None = None
     threshold: Share = 0.1
     by_area: bool = True
     cell_mm: tuple[Size, Size] | None = None
     dot: DotStyle = DotStyle(plateau=0.25)
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_file(self.file)
 
 
 class Shape(Pattern, frozen=True, kw_only=True):
@@ -301,18 +315,11 @@ class Moving(Pattern, frozen=True, kw_only=True, tag="moving"):
     array_at_mm: Point | None = None
 
 
-class Image(Pattern, frozen=True, kw_only=True, tag="image"):
+class Image(FromFile, frozen=True, kw_only=True, tag="image"):
     """A bitmap or a drawing as a plain map, or as the mask of a texture: Lévesque 2009, 8.4.2.
 
     Parameters
     ----------
-    file
-        Name of a PNG, GIF, BMP, JPEG or SVG file, seen from the file of the scene.
-    place_mm
-        Place of the top left corner on the canvas.
-    width_mm, height_mm
-        Size on the canvas; if one of them is left out, it follows from the other and from the
-        picture's shape.
     channel
         "gray", by which white is up, or "alpha", by which what is opaque is up.
     inverted_source
@@ -334,20 +341,12 @@ class Image(Pattern, frozen=True, kw_only=True, tag="image"):
         If the file is none of this machine, or a number is out of range.
     """
 
-    file: str
-    place_mm: Point = (0.0, 0.0)
-    width_mm: Size | None = None
-    height_mm: Size | None = None
     channel: Literal["gray", "alpha"] = "gray"
     inverted_source: bool = False
     blur_mm: Annotated[float, limits(0.0, 100.0, " mm")] = 0.0
     outside: Share = 0.0
     nearest: bool = False
     texture: AnyPattern | None = None
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        check_file(self.file)
 
 
 class Fill(Measured, frozen=True, kw_only=True):

@@ -139,36 +139,24 @@ class SignalLevel(Pattern, frozen=True, kw_only=True, tag="signal"):
     name: str
 
 
-class LinearGrating(Pattern, frozen=True, kw_only=True, tag="linear-grating"):
-    """Ridges and gaps along a direction: Lévesque 2009, eq. 8.4.
+class Grating(Pattern, frozen=True, kw_only=True):
+    """Base of gratings whose ridges and gaps have lengths in mm.
 
     Parameters
     ----------
     ridge_mm, gap_mm
-        Length of a ridge and of the gap after it, along the wave.
-    wave_angle_deg, ridge_angle_deg
-        Direction in which the wave travels, or in which the ridges lie; one of them, in degrees
-        from +x (right) towards +y (down). Without either the wave travels along x.
-    start_mm
-        Place at which a ridge begins.
+        Length of a ridge and of the gap after it, along the wave, or outwards of a ring.
     distortion
-        Change of the spatial frequency along the wave; None for none.
+        Change of the spatial frequency along the wave, or outwards; None for none.
     velocity_mm_s
-        Speed of the ridges in the direction of the wave (eq. 9.2); not beside a distortion.
+        Speed of the ridges in the direction of the wave, or of the rings outwards (eq. 9.2); not
+        beside a distortion.
     velocity_by
         Name of a signal that is the share of this speed at which they move; empty for all of it.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range, or both angles are given.
     """
 
     ridge_mm: Length
     gap_mm: Distance = 0.0
-    wave_angle_deg: Angle | None = None
-    ridge_angle_deg: Angle | None = None
-    start_mm: Point = (0.0, 0.0)
     distortion: Gradual | Peak | None = None
     velocity_mm_s: Velocity = 0.0
     velocity_by: str = ""
@@ -176,6 +164,36 @@ class LinearGrating(Pattern, frozen=True, kw_only=True, tag="linear-grating"):
     def __post_init__(self) -> None:
         super().__post_init__()
         _check_distortion(self.distortion, self.velocity_mm_s)
+
+    @property
+    def wave(self) -> RidgeWave:
+        """Length and speed of its ridges and gaps."""
+        return RidgeWave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
+
+
+class LinearGrating(Grating, frozen=True, kw_only=True, tag="linear-grating"):
+    """Ridges and gaps along a direction: Lévesque 2009, eq. 8.4.
+
+    Parameters
+    ----------
+    wave_angle_deg, ridge_angle_deg
+        Direction in which the wave travels, or in which the ridges lie; one of them, in degrees
+        from +x (right) towards +y (down). Without either the wave travels along x.
+    start_mm
+        Place at which a ridge begins.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or both angles are given.
+    """
+
+    wave_angle_deg: Angle | None = None
+    ridge_angle_deg: Angle | None = None
+    start_mm: Point = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
         if self.wave_angle_deg is not None and self.ridge_angle_deg is not None:
             raise ValueError("ridge_angle_deg cannot be given beside wave_angle_deg; leave one out")
 
@@ -190,27 +208,14 @@ class LinearGrating(Pattern, frozen=True, kw_only=True, tag="linear-grating"):
             return math.fmod(self.ridge_angle_deg + 90.0, 360.0)
         return self.wave_angle_deg or 0.0
 
-    @property
-    def wave(self) -> RidgeWave:
-        """Length and speed of its ridges and gaps."""
-        return RidgeWave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
 
-
-class RadialGrating(Pattern, frozen=True, kw_only=True, tag="radial-grating"):
+class RadialGrating(Grating, frozen=True, kw_only=True, tag="radial-grating"):
     """Rings of ridges around a place: Lévesque 2009, eq. 8.4 with a distance as abscissa.
 
     Parameters
     ----------
     center_mm
         Place around which they stand, and where a ridge begins.
-    ridge_mm, gap_mm
-        Width of a ring and of the gap around it.
-    distortion
-        Change of the spatial frequency outwards; None for none.
-    velocity_mm_s
-        Speed of the rings outwards (eq. 9.2); not beside a distortion.
-    velocity_by
-        Name of a signal that is the share of this speed at which they move; empty for all of it.
 
     Raises
     ------
@@ -219,20 +224,6 @@ class RadialGrating(Pattern, frozen=True, kw_only=True, tag="radial-grating"):
     """
 
     center_mm: Point
-    ridge_mm: Length
-    gap_mm: Distance = 0.0
-    distortion: Gradual | Peak | None = None
-    velocity_mm_s: Velocity = 0.0
-    velocity_by: str = ""
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        _check_distortion(self.distortion, self.velocity_mm_s)
-
-    @property
-    def wave(self) -> RidgeWave:
-        """Length and speed of its ridges and gaps."""
-        return RidgeWave(self.ridge_mm + self.gap_mm, self.velocity_mm_s)
 
 
 class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
@@ -283,10 +274,8 @@ class AxialGrating(Pattern, frozen=True, kw_only=True, tag="axial-grating"):
         if self.ridge_deg + self.gap_deg > 360.0:
             raise ValueError("ridge and gap are more than a turn together; make them smaller")
         inner_mm, outer_mm = self.fade_mm
-        if not 0.0 <= inner_mm < outer_mm <= 100.0:
+        if not 0.0 <= inner_mm <= outer_mm - LEAST_APART_MM <= 100.0:
             raise ValueError("fade is from a smaller to a larger length, from 0 to 100 mm")
-        if outer_mm - inner_mm < LEAST_APART_MM:
-            raise ValueError("fade is from a length to the same; set the second larger")
         _check_distortion(self.distortion, self.velocity_deg_s)
 
     @property

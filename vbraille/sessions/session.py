@@ -6,6 +6,7 @@ import secrets
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack, closing
 from datetime import UTC, datetime
+from difflib import get_close_matches
 from importlib.metadata import version
 from pathlib import Path
 from platform import python_version
@@ -157,7 +158,8 @@ class Session:
         loaded = load_protocol(str(protocol))
         path = free_path(participant, loaded.name) if path is None else Path(path)
         number = session or next_number(path, participant)
-        loaded, plan = plan_session(loaded, participant, seed, order, group, number, best_from)
+        chosen = {"order": order, "group": group}
+        loaded, plan = plan_session(loaded, participant, seed, number, best_from, **chosen)
         head = {
             "protocol": loaded.name,
             "participant": participant,
@@ -248,10 +250,9 @@ def plan_session(
     protocol: str | Path | Protocol,
     participant: str,
     seed: int | None = None,
-    order: int | None = None,
-    group: str | None = None,
     session: int | None = None,
     best_from: str | Path | None = None,
+    **chosen: Any,
 ) -> tuple[Protocol, Plan]:
     """Plan a session; the arguments are those of `Session.create`.
 
@@ -261,14 +262,12 @@ def plan_session(
         The protocol as the participant's group has it, and the plan.
     """
     loaded = protocol if isinstance(protocol, Protocol) else load_protocol(str(protocol))
-    if seed is None:
-        seed = secrets.randbelow(_MOST_DRAWN)
-    look = None
+    seed = secrets.randbelow(_MOST_DRAWN) if seed is None else seed
     if best_from is not None:
         from vbraille.sessions.record.trials import best_level  # loads compiled code
 
-        look = Look(texture=best_level(Path(best_from), "texture"))
-    plan = make_plan(loaded, participant, seed, order, session=session or 1, group=group, look=look)
+        chosen["look"] = Look(texture=best_level(Path(best_from), "texture"))
+    plan = make_plan(loaded, participant, seed, session=session or 1, **chosen)
     return loaded.of_group(plan.group), plan
 
 
@@ -324,23 +323,34 @@ def _conditions_now(content: Content, changed: Mapping[str, Any]) -> Conditions:
 
 
 def _open_answers(given: Any, conditions: Conditions, progress: Progress) -> Answers:
-    """Return the source of the answers.
+    """Return the source of the answers: that of a spec, lines, a function, or a source itself.
 
     Raises
     ------
     InputError
-        If it cannot be used with this session.
+        If there is no such source, or it cannot be used with this session.
     """
-    from vbraille.sessions.running.answers import Typed, answers_of
+    from vbraille.sessions.running.answers import Programmed, Scripted, Typed
 
     spec = conditions.answers if given is None or isinstance(given, str) else given
     kind, _, habits = spec.partition(":") if isinstance(spec, str) else ("", "", "")
-    if kind == "simulated":
+    source: Answers
+    if not isinstance(spec, str):
+        source = spec if hasattr(spec, "line") else Programmed(spec)
+    elif spec == "typed":
+        source = Typed()
+    elif spec == "program":
+        raise InputError(f"the answers came from a program; give {setting('answers')} typed")
+    elif kind == "simulated":
         from vbraille.sessions.running.reader import simulated_answers
 
-        source: Answers = simulated_answers(progress.protocol, progress.plan, habits)
+        source = simulated_answers(progress.protocol, progress.plan, habits)
+    elif Path(spec).exists():
+        source = Scripted(Path(spec), progress.script_line)
     else:
-        source = answers_of(spec, progress.script_line)
+        near = get_close_matches(kind, ("typed", "simulated"), 1)
+        hint = f"did you mean {near[0]}?" if near else "give typed, simulated:NOISE or a file"
+        raise InputError(f"there is no file {spec}; {hint}")
     if conditions.fast and isinstance(source, Typed):
         said = f"{setting('fast')} is for answers that are not typed"
         raise InputError(f"{said}; give {setting('answers')} simulated")

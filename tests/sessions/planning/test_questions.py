@@ -117,9 +117,6 @@ def test_a_value_is_turned_until_it_is_equal(tmp_path):
         parse("about equal")
 
 
-ITEMS = "string,shape,size\ncircle-2,circle,2-cm\nsquare-3,square,3-cm\n"
-
-
 def test_pictures_are_named_by_keys_in_any_order():
     protocol = load_protocol("icons")
     trial = next(trial for trial in make_plan(protocol, "P01", 1).trials if not trial.practice)

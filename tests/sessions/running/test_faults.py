@@ -72,6 +72,8 @@ def test_an_engine_that_dies_is_started_again_and_its_trial_shown_again(tmp_path
     assert sat.of("end")
     assert [event.data.get("why") for event in sat.of("run")] == [None, "fault"]
     assert [event.attempt for event in sat.of("cue") if event.trial == 1] == [1, 2]
+    told = {(row["answers_from"], row["moved_by"]) for row in sat.session.trials}
+    assert told == {("simulated:0", "simulated:sweep:60")}
 
 
 def test_no_trial_begins_while_the_device_takes_no_frames(tmp_path, driven):

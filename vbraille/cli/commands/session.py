@@ -136,8 +136,9 @@ def run(protocol: str, fields: tuple[tuple[str, str], ...], out: str | None, ano
     from vbraille.sessions.planning.plan import check_participant
     from vbraille.sessions.session import Session, check_fields, nearly_same
 
-    planned = {name: given.pop(name) for name in _names(_PLAN)}
-    participant = planned.pop("participant")
+    participant = given.pop("participant")
+    chosen = ("seed", "order", "group", "session", "best_from")
+    planned = {name: given.pop(name) for name in chosen}
     check_participant(participant)
     loaded = load_protocol(protocol)
     answered = dict(fields)
@@ -338,12 +339,6 @@ def _say_nothing(_sentence: str) -> None:
 def _say(sentence: str) -> None:
     with suppress(BrokenPipeError):  # a session does not end because its output is closed
         say(sentence)
-
-
-def _names(decorators: tuple[Callable, ...]) -> list[str]:
-    """Return the names of the parameters that options have."""
-    command = options.takes(*decorators)(lambda: None)
-    return [param.name for param in command.__click_params__]
 
 
 def _ask_who(participant: str, near: str, typed: Typed | None, tell: Callable[[str], None]) -> None:

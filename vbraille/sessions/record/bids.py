@@ -6,7 +6,6 @@ recordings". Sessions are added to a dataset one by one.
 
 from __future__ import annotations
 
-import csv
 import gzip
 import io
 import json
@@ -20,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vbraille.csvfiles import parse_csv
 from vbraille.errors import InputError
 from vbraille.files import write_files
 from vbraille.names import likeness
@@ -113,10 +113,10 @@ def _read_people(folder: Path) -> dict[str, str]:
     path = folder / PEOPLE
     if not path.exists():
         return {}
-    found = list(csv.reader(io.StringIO(path.read_text("utf-8")), delimiter="\t"))
-    if not found or found[0] != ["participant_id", PSEUDONYM]:
+    sheet = parse_csv(path.read_bytes(), str(path))
+    if sheet.columns != ("participant_id", PSEUDONYM):
         raise InputError(f"{path} has other columns; give another directory, and join the tables")
-    return {label.removeprefix("sub-"): who for label, who in found[1:]}
+    return {label.removeprefix("sub-"): who for label, who in sheet.rows}
 
 
 def _files(content: Content, stem: str, anonymous: bool) -> dict[str, bytes]:

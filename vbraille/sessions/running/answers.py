@@ -7,7 +7,6 @@ import select
 import sys
 import time
 from collections.abc import Callable, Iterable
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
@@ -15,7 +14,6 @@ from vbraille.errors import InputError
 from vbraille.sessions.planning.questionnaire import Item
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.simulated.skin import FeltFrames
-from vbraille.wording import setting
 
 
 class Asked(NamedTuple):
@@ -201,33 +199,3 @@ class Programmed(Answers):
         if not isinstance(line, str):
             raise InputError(f"an answer is {line!r}; give a line of text, or None to stop")
         return Line(line)
-
-
-def answers_of(spec: Any, after: int) -> Answers:
-    """Return the source of a spec.
-
-    Parameters
-    ----------
-    spec
-        "typed", the name of a file, lines, a function, or a source itself.
-    after
-        Number of the last line of the file that was used in earlier runs.
-
-    Raises
-    ------
-    InputError
-        If there is no such source.
-    """
-    if hasattr(spec, "line"):
-        return spec
-    if not isinstance(spec, str):
-        return Programmed(spec)
-    if spec == "typed":
-        return Typed()
-    if spec == "program":
-        raise InputError(f"the answers came from a program; give {setting('answers')} typed")
-    if not Path(spec).exists():
-        near = get_close_matches(spec.partition(":")[0], ("typed", "simulated"), 1)
-        hint = f"did you mean {near[0]}?" if near else "give typed, simulated:NOISE or a file"
-        raise InputError(f"there is no file {spec}; {hint}")
-    return Scripted(Path(spec), after)

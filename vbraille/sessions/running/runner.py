@@ -126,6 +126,7 @@ class Runner:
         self._suspension = Suspension()
         self._key = ""  # the key that ends reading, if one does
         self._deaths = 0
+        self._told: dict[str, Any] = {}  # what the event of a run says
         self._began_s = self._before_s = 0.0
         self._free_s = 0.0  # since when the gap before the next trial counts
         self._paused_s = 0.0
@@ -181,11 +182,9 @@ class Runner:
         Over
             Why the run is over, for `finish`; the array rests.
         """
-        self._begin(answers=self.answers.name, **told)
+        self._told = {"answers": self.answers.name, **told}
+        self._begin()
         self._watch_key()
-        if self._ambiguous:
-            words = " and ".join(sorted(self._ambiguous))
-            self.say(f"commands: type answer before {words} where that is the answer")
         if self.progress.done:
             self.say(f"resume: {self.progress.done} trials have answers")
         with self._suspension:
@@ -203,12 +202,12 @@ class Runner:
             self.say(f"no confidence: the answer to {trial.name} is kept without one")
         return over
 
-    def _begin(self, **told: Any) -> None:
-        """Write that the run has begun, or that the engine was started again."""
+    def _begin(self, **why: Any) -> None:
+        """Write that a run has begun; another one does when the engine is started again."""
         self._record.write_ticks()  # those of an engine that died: ticks of each run begin at 0
         self._began_s, self._before_s = self.device.now_s, self.progress.t_s
         self._free_s = -1e9
-        self.log("run", **told, **self.device.told)
+        self.log("run", **self._told, **self.device.told, **why)
 
     def _go_through(self) -> bool:
         """Do what comes next until nothing does; return whether there may be something again."""
@@ -651,7 +650,7 @@ class Runner:
         self.say(f"fault: {fault}; it is started again")
         self.device.start()
         trial, self.trial = self.trial, None
-        self._begin(why="fault", answers=self.answers.name)
+        self._begin(why="fault")
         self.trial = trial
         if was_shown:
             raise Again
