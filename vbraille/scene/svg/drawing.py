@@ -237,10 +237,10 @@ class SvgDrawing:
     def __init__(self, name: str, root: Element, class_looks: Mapping[str, ClassLook]) -> None:
         self._name, self._root, self._class_looks = name, root, class_looks
         self._notes: dict[str, list[tuple[int, str]]] = defaultdict(list)
-        self.ids: dict[str, Element] = {}
+        self._ids: dict[str, Element] = {}
         for element in root.iter():
             if own_id := element.get("id"):
-                self.ids.setdefault(own_id, element)
+                self._ids.setdefault(own_id, element)
             if name_of(element) == "script":
                 self.note(element, "it is never run, and ignored")
             if any(str(key).startswith("on") for key in element.keys()):  # noqa: SIM118 - no dict
@@ -251,10 +251,10 @@ class SvgDrawing:
         self._elements = self._points = 0
         self._language = _user_language()
         try:
-            self.sheets = StyleSheets(root, self.note)
+            self._sheets = StyleSheets(root, self.note)
         except InputError as error:
             raise InputError(f"{name}: {error}") from None
-        self._style = self.sheets.of(root, INITIAL, Units())
+        self._style = self._sheets.of(root, INITIAL, Units())
         self.size_px = size_px(root, self._style, name)
         self._units = Units(self.size_px, self.size_px)
 
@@ -349,7 +349,7 @@ class SvgDrawing:
             picture = '; put the picture into a scene file, as kind = "image"'
             self.note(element, f"it is ignored{picture * (name == 'image')}")
             return []
-        style = self.sheets.of(element, around.style, around.units)
+        style = self._sheets.of(element, around.style, around.units)
         look = self._look(element) or around.look
         strength = around.strength * share_of(style["opacity"])
         faint = strength <= LEAST_SHARE and around.cutting is None
@@ -417,7 +417,7 @@ class SvgDrawing:
         if place.cutting is not None:
             self.note(element, "a text does not cut; it is ignored")
             return []
-        labels = labels_of(self, element, place.matrix, place.style, place.units)
+        labels = labels_of(self._sheets, self._ids, element, place.matrix, place.style, place.units)
         return [
             DrawnNode(replace(label, amplitude=round(place.strength, 4)), one.sourceline or 0)
             for one, label in labels
@@ -426,7 +426,7 @@ class SvgDrawing:
     def _of_use(self, element: Element, place: _Place) -> list[DrawnNode]:
         """Patterns of the element that a use shows, at its place."""
         link = link_of(element)
-        target = self.ids.get(link[1:]) if link.startswith("#") else None
+        target = self._ids.get(link[1:]) if link.startswith("#") else None
         if target is None:
             why = "which is not there" if link.startswith("#") else "but nothing is fetched"
             self.note(element, f"it uses {short(link)!r}, {why}; ignored")
@@ -541,7 +541,7 @@ class SvgDrawing:
             return there and self._paint(element, there, what, there.style[which])
         if not word.startswith("url("):
             return color_of(text.strip())
-        found = self.ids.get(target_of(text))
+        found = self._ids.get(target_of(text))
         if found is not None and name_of(found).endswith(("Gradient", "pattern")):
             color = self._gradient(found)
             if color == BLACK:
@@ -565,10 +565,10 @@ class SvgDrawing:
         for _ in range(_MOST_LINKS):
             if after is not None and not stops:
                 stops = [child for child in after if name_of(child) == "stop"]
-                after = self.ids.get(link_of(after)[1:])
+                after = self._ids.get(link_of(after)[1:])
         colors: set[Color] = set()
         for stop in stops:
-            style = self.sheets.of(stop, INITIAL, self._units)
+            style = self._sheets.of(stop, INITIAL, self._units)
             color = color_of(style["stop-color"]) or BLACK
             opacity = share_of(style["stop-opacity"])
             colors.add(color._replace(alpha=color.alpha * opacity))
@@ -647,7 +647,7 @@ class SvgDrawing:
         written = place.style["clip-path"]
         if written == "none":
             return place
-        target = self.ids.get(target_of(written))
+        target = self._ids.get(target_of(written))
         box: Box | None = (0.0, 0.0, 1.0, 1.0)
         if target is not None and target.get("clipPathUnits") == "objectBoundingBox":
             box = self._box(element, name, place)
@@ -655,7 +655,7 @@ class SvgDrawing:
             self.note(element, f"its clip-path {short(written, 40)} is ignored")
             return place
         around = self._style_around(target)
-        style = self.sheets.of(target, around, place.units)
+        style = self._sheets.of(target, around, place.units)
         matrix = place.matrix @ affine(box[2], 0.0, 0.0, box[3], box[0], box[1])
         rings: list[Ring] = []
         inner = changed(place, matrix=matrix, style=style, cutting=rings, clip=None, named=False)
@@ -677,13 +677,13 @@ class SvgDrawing:
         """Style of the elements around one that is used from elsewhere."""
         style = INITIAL
         for one in reversed(list(element.iterancestors())):
-            style = self.sheets.of(one, style, self._units)
+            style = self._sheets.of(one, style, self._units)
         return style
 
     def _markers(self, segments: Any, place: _Place) -> list[DrawnNode]:
         """Patterns of the markers at the vertices of a path."""
         start, middle, end = (
-            self.ids.get(target_of(place.style[f"marker-{at}"])) for at in ("start", "mid", "end")
+            self._ids.get(target_of(place.style[f"marker-{at}"])) for at in ("start", "mid", "end")
         )
         if start is middle is end is None or place.depth >= _MOST_DEPTH:
             return []
@@ -709,7 +709,7 @@ class SvgDrawing:
         unit = units.length(place.style["stroke-width"], units.diagonal) or 0.0
         if marker.get("markerUnits") == "userSpaceOnUse":
             unit = 1.0
-        style = self.sheets.of(marker, self._style_around(marker), self._units)
+        style = self._sheets.of(marker, self._style_around(marker), self._units)
         faint = share_of(style["opacity"]) <= LEAST_SHARE
         if min(size.real, size.imag, unit) <= 0 or faint or marker in self._used:
             return []

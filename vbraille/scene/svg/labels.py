@@ -13,12 +13,13 @@ from vbraille.scene.svg.document import link_of, name_of, plain
 from vbraille.scene.svg.outlines import TOO_FAR, segments_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from vbraille.scene.svg.document import Element
-    from vbraille.scene.svg.drawing import SvgDrawing
-    from vbraille.scene.svg.styles import Style
+        from vbraille.scene.svg.styles import Style, StyleSheets
     from vbraille.scene.svg.values import AffineMap, Units
+
+    Ids = Mapping[str, Element]
 
 # The size of braille is the device's, not the drawing's, and is not known here. These are a
 # Latero's, which are among the largest: labels placed by them meet nothing on other devices.
@@ -42,7 +43,7 @@ class _Line:
 
 
 def labels_of(
-    drawing: SvgDrawing, element: Element, matrix: AffineMap, style: Style, units: Units
+    sheets: StyleSheets, ids: Ids, element: Element, matrix: AffineMap, style: Style, units: Units
 ) -> Iterator[tuple[Element, Label]]:
     """Labels of an element ``text``, one for each of its lines.
 
@@ -56,7 +57,7 @@ def labels_of(
         If it stands farther than 10 m from the drawing's corner.
     """
     lines: list[_Line] = []
-    _gather(drawing, element, style, units, lines)
+    _gather(sheets, ids, element, style, units, lines)
     angle = cmath.phase(matrix.p + matrix.q)
     along = cmath.rect(1.0, angle)
     down = along * 1j
@@ -81,38 +82,38 @@ def labels_of(
 
 
 def _gather(
-    drawing: SvgDrawing, element: Element, style: Style, units: Units, lines: list[_Line]
+    sheets: StyleSheets, ids: Ids, element: Element, style: Style, units: Units, lines: list[_Line]
 ) -> None:
     """Add the lines of a text or a part of it, which begins one where it has a place."""
     before = lines[-1].place if lines else 0j
-    place = _place(drawing, element, units, before)
+    place = _place(sheets, ids, element, units, before)
     if place is not None or not lines:
         lines.append(_Line(element, style, place or 0j))
     lines[-1].text += element.text or ""
     for child in element:
         if name_of(child) in _PARTS:
-            inner = drawing.sheets.of(child, style, units)
+            inner = sheets.of(child, style, units)
             if inner["display"] != "none" and inner["visibility"] != "hidden":
-                _gather(drawing, child, inner, units.sized(inner), lines)
+                _gather(sheets, ids, child, inner, units.sized(inner), lines)
         lines[-1].text += child.tail or ""
 
 
-def _place(drawing: SvgDrawing, element: Element, units: Units, before: complex) -> complex | None:
+def _place(sheets: StyleSheets, ids: Ids, element: Element, units: Units, before: complex) -> complex | None:
     """Place of a part of a text; None if it goes on where the part before ends."""
     if name_of(element) == "textPath":
-        drawing.note(element, "its path is not followed: the text is straight from where it begins")
-        path = drawing.ids.get(link_of(element)[1:])
+        sheets.note(element, "its path is not followed: the text is straight from where it begins")
+        path = ids.get(link_of(element)[1:])
         segments, _ = segments_of("" if path is None else path.get("d") or "")
         return segments[0].end if len(segments) else None
     if element.get("rotate"):
-        drawing.note(element, "its letters are turned, which is not felt")
+        sheets.note(element, "its letters are turned, which is not felt")
     found: dict[str, str] = {}
     for name in ("x", "y", "dx", "dy"):
         words = (element.get(name) or "").replace(",", " ").split()
         if words:
             found[name] = words[0]
         if len(words) > 1:
-            drawing.note(element, f"its letters have places in {name}; the first one counts")
+            sheets.note(element, f"its letters have places in {name}; the first one counts")
     move = units.place(found.get("dx"), found.get("dy"))
     if "x" not in found and "y" not in found and not move.imag:
         return None
