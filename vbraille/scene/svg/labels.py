@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from vbraille.scene.svg.document import Element
-        from vbraille.scene.svg.styles import Style, StyleSheets
+    from vbraille.scene.svg.styles import Style, StyleSheets
     from vbraille.scene.svg.values import AffineMap, Units
 
     Ids = Mapping[str, Element]
@@ -98,7 +98,9 @@ def _gather(
         lines[-1].text += child.tail or ""
 
 
-def _place(sheets: StyleSheets, ids: Ids, element: Element, units: Units, before: complex) -> complex | None:
+def _place(
+    sheets: StyleSheets, ids: Ids, element: Element, units: Units, before: complex
+) -> complex | None:
     """Place of a part of a text; None if it goes on where the part before ends."""
     if name_of(element) == "textPath":
         sheets.note(element, "its path is not followed: the text is straight from where it begins")
