@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.render.braille.style import BrailleStyle
-    from vbraille.scene.measures import Point
     from vbraille.scene.scene import Scene
 
 _MOST_SAID = 24  # characters of a label's text in a sentence
@@ -88,7 +87,9 @@ def write_label(label: Label, style: BrailleStyle, language: str = "en") -> Writ
     table = _table(label.table or language)
     cells = _cells_across(label, style)
     lines = tuple(
-        masks for line in label.text.splitlines() for masks in _broken(line, table, cells)
+        np.frombuffer(masks, np.uint8)
+        for line in label.text.splitlines()
+        for masks in wrap_text(line, table, cells)
     )
     while lines and not lines[-1].any():
         lines = lines[:-1]
@@ -122,7 +123,9 @@ def label_warnings(
     tiles = (tile for tile in each(*scene.elements) if isinstance(tile, Tile))
     tiled = {part for part in each(*tiles) if isinstance(part, Label)}
     for label, name in _labels(scene, places):
-        unknown = _unknown(label, label.table or scene.language)
+        # Characters that were written as a mark.
+        table = _table(label.table or scene.language)
+        unknown = {sign for line in label.text.splitlines() for sign in table.unknown(line)}
         if unknown:
             said.append(
                 f"{name} has {count(len(unknown), 'character')} that its table does not know: "
@@ -131,9 +134,11 @@ def label_warnings(
         if label in tiled:
             continue  # it has no one place
         corners = corners_mm(label, written[label])
-        if beyond := _beyond_mm(corners, scene.canvas.width_mm, scene.canvas.height_mm):
+        right_mm, bottom_mm = scene.canvas.width_mm, scene.canvas.height_mm
+        far_mm = max(max(-x, x - right_mm, -y, y - bottom_mm) for x, y in corners)
+        if far_mm > _TOUCHING_MM:
             said.append(
-                f"{name} reaches {beyond:.1f} mm beyond the canvas; move it, or make it narrower"
+                f"{name} reaches {far_mm:.1f} mm beyond the canvas; move it, or make it narrower"
             )
         standing.append((name, np.array(corners)))
     for (lower, below), (upper, above) in itertools.combinations(standing[:_MOST_COMPARED], 2):
@@ -163,11 +168,6 @@ def _table(name: str) -> BrailleTable:
     return BrailleTable(name if {".", "/", ","} & set(name) else find_table(name))
 
 
-def _unknown(label: Label, table: str) -> set[str]:
-    """Characters of a label that were written as a mark, since its table does not know them."""
-    return {sign for line in label.text.splitlines() for sign in _table(table).unknown(line)}
-
-
 def _cells_across(label: Label, style: BrailleStyle) -> int | None:
     """Number of cells that fit into the width of a label; None if it is one line."""
     if label.width_mm is None:
@@ -179,17 +179,6 @@ def _cells_across(label: Label, style: BrailleStyle) -> int | None:
         )
     more_mm = label.width_mm - least_mm + _TOUCHING_MM
     return 1 + int(more_mm / style.geometry.cell_pitch_mm)
-
-
-def _broken(line: str, table: BrailleTable, width: int | None) -> Iterator[NDArray[np.uint8]]:
-    for masks in wrap_text(line, table, width):
-        yield np.frombuffer(masks, np.uint8)
-
-
-def _beyond_mm(corners: Sequence[Point], width_mm: float, height_mm: float) -> float:
-    """Tell how far the farthest corner is beyond a canvas; 0 if none is."""
-    far_mm = max(max(-x, x - width_mm, -y, y - height_mm) for x, y in corners)
-    return far_mm if far_mm > _TOUCHING_MM else 0.0
 
 
 def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> bool:

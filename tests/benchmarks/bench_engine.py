@@ -42,7 +42,6 @@ while True:
 """
 
 INFO = STRESS2.on(STRESS2.style.geometry)
-ROOM = STRESS2.style.room(INFO, 26)
 
 
 def run() -> Iterator[Result]:
@@ -77,7 +76,7 @@ def beside(script: str) -> Iterator[None]:
 
 def lateness_us(busy_parent: bool) -> NDArray[np.float64]:
     """Lateness of the ticks of a host, for one block; float64[n]."""
-    with Host("sim:?hand=sweep:60", INFO, ROOM) as host:
+    with Host("sim:?hand=sweep:60", INFO) as host:
         host.show(line(), 1)
         time.sleep(0.2)
         host.poll()
@@ -179,7 +178,7 @@ print(over)
 
 def _long_run() -> Iterator[Result]:
     control = subprocess.Popen([sys.executable, "-c", _CONTROL], stdout=subprocess.PIPE, text=True)
-    with control, simulator("--hand", "sweep:60") as (spec, _), Host(spec, INFO, ROOM) as host:
+    with control, simulator("--hand", "sweep:60") as (spec, _), Host(spec, INFO) as host:
         host.show(line(), 1)
         begun_s = time.monotonic()
         settled = None

@@ -53,7 +53,6 @@ def run() -> Iterator[Result]:
     """Measure, and compare with what is asked for."""
     yield frame_from_python(masked(), "two gratings through an image mask", 15, 3)
     yield frame_from_python(nested(), "ten parts in each other under every actuator", 60, 12)
-    yield from pruning()
     yield from many()
     yield outline()
     yield from compiling()
@@ -130,25 +129,6 @@ def frame_from_python(
 
 def scene_first(scene: tuple[Scene, Assets]) -> tuple[Scene, object, Assets]:
     return scene[0], DISPLAY, scene[1]
-
-
-def pruning() -> Iterator[Result]:
-    """Fifteen short lines, near one of them and elsewhere: Lévesque 2009, 8.5.3."""
-    scene = short_lines()
-    ours, whole = compile_scene(scene, DISPLAY), compile_scene(scene, DISPLAY, pruned=False)
-    random = np.random.default_rng(2)
-    line = scene.elements[7]
-    middle = np.add(line.start_mm, line.end_mm) / 2
-    near = middle + random.uniform(-5, 5, (PLACES, 2))
-    elsewhere = near + np.array((22.0, 0.0))
-    for places, where, least in ((near, "near one", 6), (elsewhere, "elsewhere", 40)):
-        share, _ = ratio(poses_of(whole, places), poses_of(ours, places), pairs=51)
-        yield Result(
-            f"15 short lines without pruning, against the same with it, {where}, a frame",
-            f"≥ {least} ×",
-            f"{share:.1f} ×",
-            share >= least,
-        )
 
 
 def poses_of(program: Program, places: np.ndarray) -> Callable[[], object]:

@@ -4,7 +4,6 @@ from functools import cache
 import numpy as np
 import pytest
 from matplotlib import rc_context
-from matplotlib.colors import to_rgb
 
 from tests.pictures.tables import TABLES, make_line, make_page
 from vbraille.pictures import draw
@@ -39,18 +38,6 @@ def test_every_axis_is_labelled_with_its_unit(table):
     for axes in figure.axes:
         assert axes.get_xlabel() or figure.get_supxlabel()
     assert any(axes.get_ylabel() for axes in figure.axes) or figure.get_supylabel()
-
-
-@pytest.mark.no_cover
-@KINDS
-def test_pictures_are_grey(table):
-    figure = drawn(table)
-    colours = [line.get_color() for axes in figure.axes for line in axes.get_lines()]
-    for axes in figure.axes:
-        for collection in axes.collections:
-            colours += [tuple(colour[:3]) for colour in collection.get_edgecolor()]
-    for colour in colours:
-        assert len(set(to_rgb(colour))) == 1
 
 
 def test_curves_stand_one_below_the_other_a_panel_for_each_method_or_width():

@@ -3,7 +3,6 @@
 import math
 import time
 
-import numpy as np
 import pytest
 
 from tests.render.scene.twin import opacity
@@ -117,15 +116,6 @@ def test_it_finds_what_asking_every_element_finds(rng):
             assert name_at(index, x_mm, y_mm) == str(over[-1])
         elif max(shares) <= 0.02:
             assert name_at(index, x_mm, y_mm) is None
-
-
-def test_asking_does_not_grow_with_the_scene():
-    """Of ten thousand elements, those are asked that have their boxes at the place."""
-    x, y = np.meshgrid(np.arange(100) * 3.0, np.arange(100) * 3.0)
-    dots = [disc(*at, 1.0, title="x") for at in zip(x.ravel(), y.ravel(), strict=True)]
-    index = index_of(*dots, width_mm=300, height_mm=300)
-    assert name_at(index, 150, 150) == "x"
-    assert index.asked <= 4
 
 
 def test_very_many_that_cover_everything_take_little_and_only_the_upper_ones_are_asked():

@@ -231,10 +231,6 @@ def _written(
         If its elements cannot be put together by its operation, patterns stand too deep in each
         other, or a number is not finite.
     """
-    if scene.operation in ("weighted", "blend"):
-        raise ValueError(
-            f'operation = "{scene.operation}" is for groups; put the elements into one'
-        )
     writer = _Writer(scene, assets or Assets())
     if not scene.elements:
         writer.say(i.LEVEL, 0.0)

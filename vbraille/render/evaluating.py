@@ -129,10 +129,21 @@ def _shifted(own, given, time, x, y):
 
 
 @compiled
-def _find_live(numbers, rows, gates, left, top, right, bottom):
-    """List the places of the instructions that matter within a box, and return how many."""
+def _find_live(numbers, rows, count):
+    """List the places of the instructions that matter to any place, and return how many."""
+    left, top, right, bottom = _FAR, _FAR, -_FAR, -_FAR
+    for n in range(count):
+        x, y = rows[X_ROW, n], rows[Y_ROW, n]
+        left, right = min(left, x), max(right, x)
+        top, bottom = min(top, y), max(bottom, y)
+    # Written so that NaN is nowhere.
+    if not (left <= numbers[RIGHT_MM] and right >= 0.0):
+        return 0
+    if not (top <= numbers[BOTTOM_MM] and bottom >= 0.0):
+        return 0
+    gates = shut_gates(numbers, rows[GIVEN_ROW])
     width = rows.shape[1]
-    here, count, depth = CODE, 0, 0
+    here, found, depth = CODE, 0, 0
     while numbers[here] != END:
         operation, own = int(numbers[here]), numbers[here + HEAD :]
         length = int(numbers[here + 1])
@@ -142,26 +153,25 @@ def _find_live(numbers, rows, gates, left, top, right, bottom):
             if (beside and depth == 0) or gates & int(own[4]) != 0:
                 length += int(own[5])
         else:
-            rows[LIVE_ROW + count // width, count % width] = here
-            count += 1
+            rows[LIVE_ROW + found // width, found % width] = here
+            found += 1
         depth += (operation in (WRAP, SHIFT)) - (operation == RESTORE)
         here += length
-    return count
+    return found
 
 
 @compiled
-def _evaluate(numbers, table, rows, count, gates, time, left, top, right, bottom):
+def _evaluate(numbers, table, rows, count, time):
     """Compute the deflections at ``count`` places, which are in the rows X and Y, on the stack.
 
     The row of signs says which way each place swings, 1 or -1. Without a time, which is NaN then,
-    it has noise from -1 to 1 that stands for vibrations. The row `GIVEN_ROW` has the signals, by
-    which ``gates`` are shut. All places are in the box that is given last.
+    it has noise from -1 to 1 that stands for vibrations. The row `GIVEN_ROW` has the signals.
     """
     x, y, sign = rows[X_ROW], rows[Y_ROW], rows[SIGN_ROW]
     across, along, place = rows[ACROSS_ROW], rows[ALONG_ROW], rows[PLACE_ROW]
     inside, part, given = rows[INSIDE_ROW], rows[PART_ROW], rows[GIVEN_ROW]
     width, above = rows.shape[1], STACK_ROW  # the row above the uppermost value
-    for k in range(_find_live(numbers, rows, gates, left, top, right, bottom)):
+    for k in range(_find_live(numbers, rows, count)):
         here = int(rows[LIVE_ROW + k // width, k % width])
         operation, end = int(numbers[here]), here + int(numbers[here + 1])
         own = numbers[here + HEAD :]
@@ -286,23 +296,13 @@ def _evaluate(numbers, table, rows, count, gates, time, left, top, right, bottom
 _NAME = "vbraille_evaluate_scene"
 _ANY = 1 << 40
 _POINTERS = types.CPointer(types.float64), types.CPointer(types.uint16)
-_SIGNATURE = types.void(*_POINTERS, _POINTERS[0], *(types.int64,) * 3, *(types.float64,) * 5)
+_SIGNATURE = types.void(*_POINTERS, _POINTERS[0], types.int64, types.int64, types.float64)
 
 
-def _evaluate_plainly(numbers, table, rows, width, count, gates, time, left, top, right, bottom):
+def _evaluate_plainly(numbers, table, rows, width, count, time):
     # The evaluator stays within the program that was compiled; how long that is it does not ask.
-    _evaluate(
-        carray(numbers, (_ANY,)),
-        carray(table, (_ANY,)),
-        carray(rows, (LIVE_ROW, width)),
-        count,
-        gates,
-        time,
-        left,
-        top,
-        right,
-        bottom,
-    )
+    numbers, table = carray(numbers, (_ANY,)), carray(table, (_ANY,))
+    _evaluate(numbers, table, carray(rows, (LIVE_ROW, width)), count, time)
 
 
 if config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
@@ -316,21 +316,9 @@ else:
     _call = types.ExternalFunction(_NAME, _SIGNATURE)
 
     @compiled
-    def evaluate(numbers, table, rows, count, gates, time, left, top, right, bottom):
+    def evaluate(numbers, table, rows, count, time):
         """Do as `_evaluate` does, which is not compiled into the caller."""
-        width, pointers = rows.shape[1], (numbers.ctypes, table.ctypes, rows.ctypes)
-        _call(*pointers, width, count, gates, time, left, top, right, bottom)
-
-
-@compiled
-def _bounds(rows, count):
-    """Find the box of all places."""
-    left, top, right, bottom = _FAR, _FAR, -_FAR, -_FAR
-    for n in range(count):
-        x, y = rows[X_ROW, n], rows[Y_ROW, n]
-        left, right = min(left, x), max(right, x)
-        top, bottom = min(top, y), max(bottom, y)
-    return left, top, right, bottom
+        _call(numbers.ctypes, table.ctypes, rows.ctypes, rows.shape[1], count, time)
 
 
 @compiled
@@ -340,18 +328,11 @@ def show(numbers, table, rows, time, out):
     The row of signs, and that of the values of signals, are filled in, too.
     """
     lines, columns = out.shape
-    count = lines * columns
-    left, top, right, bottom = _bounds(rows, count)
+    evaluate(numbers, table, rows, lines * columns, time)
     right_mm, bottom_mm = numbers[RIGHT_MM], numbers[BOTTOM_MM]
-    # Written so that NaN is nowhere.
-    is_seen = left <= right_mm and right >= 0.0 and top <= bottom_mm and bottom >= 0.0
-    if is_seen:
-        gates = shut_gates(numbers, rows[GIVEN_ROW])
-        evaluate(numbers, table, rows, count, gates, time, left, top, right, bottom)
     n = 0
     for line in range(lines):
         for column in range(columns):
-            x, y = rows[X_ROW, n], rows[Y_ROW, n]
-            on_canvas = is_seen and 0.0 <= x <= right_mm and 0.0 <= y <= bottom_mm
+            on_canvas = 0.0 <= rows[X_ROW, n] <= right_mm and 0.0 <= rows[Y_ROW, n] <= bottom_mm
             out[line, column] = min(max(rows[STACK_ROW, n], 0.0), 1.0) if on_canvas else 0.0
             n += 1

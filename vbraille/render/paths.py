@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from vbraille.render.patternkernels import CORNER_NUMBERS
 from vbraille.scene.bounds import drawn_radius_mm
@@ -102,35 +102,12 @@ def marker_numbers(polygon: Polygon) -> list[float]:
     return numbers
 
 
-class _RowOnSegment(NamedTuple):
-    """Numbers of a row of dots along a segment or around a circle."""
-
-    x_mm: float
-    y_mm: float
-    right: float = 0.0
-    down: float = 0.0
-    length_mm: float = 0.0
-    radius_mm: float = 0.0
-    at_mm: float = 0.0
-    pitch_mm: float = 0.0
-    low_mm: float = -_FAR
-    high_mm: float = _FAR
-    begin_mm: float = -_FAR
-    begin_along: float = 0.0
-    begin_across: float = 0.0
-    end_mm: float = _FAR
-    end_along: float = 0.0
-    end_across: float = 0.0
-    is_cut_before: float = 0.0
-    is_cut_after: float = 0.0
-
-
 def moving_rows(shape: AnyShape) -> Iterator[Numbers]:
-    """Numbers of the rows of dots that move along a shape."""
+    """Numbers of the rows of dots that move along a shape, one of each segment that they are on."""
     for row in rows_of(shape)[1]:
         if isinstance(shape, Circle):
-            radius_mm = shape.radius_mm
-            yield _RowOnSegment(*shape.center_mm, radius_mm=radius_mm, pitch_mm=row.pitch_mm)
+            place = (*shape.center_mm, 0.0, 0.0, 0.0, shape.radius_mm, 0.0, row.pitch_mm)
+            yield (*place, *(0.0,) * 10)
         else:
             yield from _row_segments(row, drawn_radius_mm(shape))
 
@@ -138,30 +115,22 @@ def moving_rows(shape: AnyShape) -> Iterator[Numbers]:
 def _row_segments(row: DotRow, radius_mm: float) -> Iterator[Numbers]:
     """Numbers of the segments of a row of dots of a radius."""
     segments = list(itertools.starmap(_straight, itertools.pairwise(row.points_mm)))
+    first, last = segments[0], segments[-1]
     closes = math.isinf(row.begin_mm)
-    whole_mm = sum(segment[4] for segment in segments)
+    begin_mm = max(row.begin_mm, -_FAR)
+    end_mm = min(sum(segment[4] for segment in segments) - row.end_mm, _FAR)
     at_mm = 0.0
-    for number, segment in enumerate(segments):
+    for segment in segments:
         length_mm = segment[4]
-        opens = number == 0 and not closes
-        ends = number == len(segments) - 1 and not closes
+        place = (*segment[:5], 0.0, at_mm, row.pitch_mm)
+        opens, ends = segment is first and not closes, segment is last and not closes
+        owns = (-_FAR if opens else at_mm, _FAR if ends else at_mm + length_mm)
+        begin = (begin_mm, _along(first, segment), _across(first, segment))
+        end = (end_mm, _along(last, segment), _across(last, segment))
         # A dot beyond a bend that is nearer than it reaches might be cut off, too.
         is_long = length_mm >= 2 * radius_mm
-        yield _RowOnSegment(
-            *segment[:5],
-            at_mm=at_mm,
-            pitch_mm=row.pitch_mm,
-            low_mm=-_FAR if opens else at_mm,
-            high_mm=_FAR if ends else at_mm + length_mm,
-            begin_mm=max(row.begin_mm, -_FAR),
-            begin_along=_along(segments[0], segment),
-            begin_across=_across(segments[0], segment),
-            end_mm=min(whole_mm - row.end_mm, _FAR),
-            end_along=_along(segments[-1], segment),
-            end_across=_across(segments[-1], segment),
-            is_cut_before=float(opens and row.begin_mm < 0 and is_long),
-            is_cut_after=float(ends and row.end_mm < 0 and is_long),
-        )
+        cut = opens and row.begin_mm < 0 and is_long, ends and row.end_mm < 0 and is_long
+        yield (*place, *owns, *begin, *end, *cut)
         at_mm += length_mm
 
 

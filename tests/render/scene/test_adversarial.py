@@ -15,7 +15,6 @@ from vbraille.scene.patterns import (
     Label,
     PathShape,
     Polygon,
-    StraightLine,
     Tile,
 )
 from vbraille.scene.strokes import (
@@ -29,9 +28,7 @@ from vbraille.scene.strokes import (
 )
 from vbraille.scene.textures import (
     AxialGrating,
-    Gradual,
     LinearGrating,
-    Peak,
     RadialGrating,
     TurnPeak,
     Uniform,
@@ -161,25 +158,6 @@ def test_the_very_middle_of_things(name, rng):
 
 
 FAR = 9900.0
-FAR_AWAY = {
-    "linear": LinearGrating(ridge_mm=0.5, wave_angle_deg=33, start_mm=(-FAR, FAR)),
-    "radial": RadialGrating(center_mm=(FAR, -FAR), ridge_mm=1),
-    "axial": AxialGrating(center_mm=(-FAR, -FAR), ridge_deg=0.5),
-    "gradual": LinearGrating(
-        ridge_mm=5, distortion=Gradual(factor=20, start_mm=-10_000, length_mm=10_000)
-    ),
-    "peak": RadialGrating(
-        center_mm=(-FAR, 0),
-        ridge_mm=5,
-        distortion=Peak(factor=0.05, center_mm=9930, length_mm=0.05),
-    ),
-    "tile": Tile(width_mm=7, height_mm=0.1, part=RadialGrating(center_mm=(3, 0), ridge_mm=1)),
-    "circle": Circle(center_mm=(FAR, 30), radius_mm=FAR - 30, stroke=ALONG),
-    "line": StraightLine(
-        start_mm=(-FAR, -FAR), end_mm=(FAR, FAR), stroke=wide(20, along=Along(ridge_mm=1))
-    ),
-    "stroke of ten metres": StraightLine(start_mm=(0, 0), end_mm=(1, 0), stroke=wide(10_000)),
-}
 
 
 @pytest.mark.parametrize("place", [(9950.0, 9950.0), (9950.0, 30.0)])

@@ -140,8 +140,3 @@ def test_patterns_may_not_stand_too_deep_in_each_other():
             assert frame(compiled(nested)).min() == 0.5
     with pytest.raises(ValueError, match="too deep"):
         compiled(nested)
-
-
-def test_a_scene_is_no_weighted_sum():
-    with pytest.raises(ValueError, match="is for groups"):
-        compiled(Uniform(), operation="weighted")

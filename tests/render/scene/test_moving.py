@@ -2,7 +2,6 @@
 
 import math
 
-import msgspec
 import numpy as np
 import pytest
 from msgspec.structs import replace
@@ -12,8 +11,7 @@ from vbraille.render.compiling import SceneMap, compile_scene
 from vbraille.scene.bounds import bounds
 from vbraille.scene.dotting import rows_of
 from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
-from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.signals import Switch, packed
+from vbraille.scene.scene import Canvas
 from vbraille.scene.strokes import Along, DotStyle, Dotting, MovingCue, Stroke, Vibration
 
 CANVAS = Canvas(width_mm=60, height_mm=60)
@@ -126,34 +124,6 @@ def test_what_moves_stays_within_its_bounds_and_never_jumps(shape):
         assert up.any()
         for column, row in zip(columns, rows, strict=True):
             assert box.holds(x[column], y[row])
-
-
-@pytest.mark.parametrize("operation", ["overwrite", "maximum"])
-@pytest.mark.parametrize("shape", [LINE, SQUARE, RING, CUED, THIN, CUTS])
-def test_a_signal_is_the_share_of_the_speed_at_which_it_moves(shape, operation):
-    """A signal that is 1 moves it as time does, and one that is 0 not at all."""
-    signals = {"on": Switch(levels=(1.0, 0.0))}
-    by_signal = msgspec.convert(
-        with_velocity_by(msgspec.to_builtins(shape), "on"), type(shape), strict=False
-    )
-    x, times = np.linspace(12, 38, 40), np.arange(0, 0.08, 0.002)
-    for state, shown in ((0, shape), (1, None)):
-        scene = Scene(canvas=CANVAS, operation=operation, elements=(by_signal,), signals=signals)
-        moved = compile_scene(scene, STRESS2_8X8_ARRAY).poses(
-            x, np.full(40, 30.0), 0.0, times, switches=packed({1: state}, signals)
-        )[1]
-        alone = Scene(canvas=CANVAS, operation=operation, elements=(shape,))
-        at = times if shown is not None else 0.0
-        still = compile_scene(alone, STRESS2_8X8_ARRAY).poses(x, np.full(40, 30.0), 0.0, at)[1]
-        np.testing.assert_allclose(moved, still, atol=1e-6)
-
-
-def with_velocity_by(value, name):
-    """The same with the name of a signal wherever there is a velocity."""
-    if isinstance(value, dict):
-        value = {key: with_velocity_by(inner, name) for key, inner in value.items()}
-        return {**value, "velocity_by": name} if value.get("velocity_mm_s") else value
-    return value
 
 
 @pytest.mark.parametrize(

@@ -11,9 +11,7 @@ from vbraille.scene.textures import (
     AxialGrating,
     Gradual,
     LinearGrating,
-    Peak,
     RadialGrating,
-    Uniform,
 )
 
 X = np.linspace(-60, 180, 24_001)  # steps of 0.01 mm
@@ -68,34 +66,6 @@ def test_spokes_fade_into_the_middle():
 # Nothing jumps
 
 
-def steepest(pattern, steps, time_s=0.0):
-    """The steepest slope of a pattern along ways of short steps."""
-    x, y = steps
-    far = np.hypot(np.diff(x), np.diff(y))
-    return np.max(np.abs(np.diff(felt(pattern, x, y, time_s=time_s))) / far)
-
-
-def ways(rng):
-    """A straight way of steps of 1 µm or so, all over a canvas, and not through its middle."""
-    start, end = rng.uniform(0, 60, (2, 2))
-    share = np.linspace(0, 1, 20_001)
-    return start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1])
-
-
-@pytest.mark.parametrize("gap_mm", [0.0, 3.0])
-@pytest.mark.parametrize(
-    "distortion", [None, Gradual(factor=6, start_mm=5, length_mm=30), Peak(factor=0.2)]
-)
-def test_gratings_are_no_steeper_than_their_ridges(rng, gap_mm, distortion):
-    most = 6 if isinstance(distortion, Gradual) else 1
-    for kind in (
-        LinearGrating(ridge_mm=4, gap_mm=gap_mm, wave_angle_deg=25, distortion=distortion),
-        RadialGrating(center_mm=(30, 30), ridge_mm=4, gap_mm=gap_mm, distortion=distortion),
-    ):
-        for _ in range(4):
-            assert steepest(kind, ways(rng)) <= math.pi / 4 * most * (1 + 1e-6)
-
-
 # Images: 8.4.2
 
 
@@ -108,8 +78,3 @@ def test_a_tile_comes_back_in_both_directions_from_its_origin():
     x = np.array([1.5, 4.0, 7.9])
     for n in (-3, -1, 0, 2):
         np.testing.assert_allclose(felt(tile, x + 7 * n, 3.0 - 5 * n), felt(part, x - 1), atol=1e-9)
-
-
-def test_a_uniform_texture_is_the_same_everywhere():
-    assert set(felt(Uniform(level=0.5), X)) == {0.5}
-    assert set(felt(Uniform(level=0.5, amplitude=0.5, inverted=True), X)) == {0.75}

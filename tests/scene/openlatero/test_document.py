@@ -4,8 +4,6 @@ import re
 from pathlib import Path
 from typing import get_args
 
-from tests.scene.openlatero.files import scene, texture
-from vbraille.scene.openlatero import read_gen
 from vbraille.scene.openlatero.elements import MOST_BYTES, MOST_ELEMENTS, PATTERNS, TEXTURES
 from vbraille.scene.openlatero.textures import OPERATIONS
 from vbraille.scene.patterns import AnyPattern
@@ -26,20 +24,6 @@ def test_every_type_texture_and_operation_is_in_its_table():
     assert set(table("texture")) == set(TEXTURES)
     assert set(table("operation")) == {*OPERATIONS, "reactive"}
     assert all(table("operation")[name] == here for name, here in OPERATIONS.items())
-
-
-def test_textures_become_what_the_table_says(tmp_path):
-    path = tmp_path / "old.gen"
-    for name, here in table("texture").items():
-        kind = here.partition(" ")[0]
-        if kind not in KINDS:
-            continue
-        inside = (texture("Plain") + texture("Vibration")) if name == "Combo" else ""
-        path.write_text(scene(texture(name, inside)))
-        found = read_gen(path).scene
-        # A group alone is the scene itself.
-        made = found.elements[0].__struct_config__.tag if len(found.elements) == 1 else "group"
-        assert made == kind, name
 
 
 def test_the_limits_are_as_said():

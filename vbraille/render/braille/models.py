@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -134,14 +135,11 @@ MODELS = {model.name: model for model in (STRESS2, STRESS2_8X8, PANTOGRAPH, LATE
 
 def same_array(one: Display, other: Display) -> bool:
     """Tell whether two displays have as many actuators, as far apart; a single row has no pitch."""
-    if one.shape != other.shape:
-        return False
-    return all(
-        lines == 1 or abs(pitch_mm - other_mm) <= PITCH_TOLERANCE * other_mm
-        for lines, pitch_mm, other_mm in (
-            (one.columns, one.column_pitch_mm, other.column_pitch_mm),
-            (one.rows, one.row_pitch_mm, other.row_pitch_mm),
-        )
+    columns = one.columns, one.column_pitch_mm, other.column_pitch_mm
+    rows = one.rows, one.row_pitch_mm, other.row_pitch_mm
+    return one.shape == other.shape and all(
+        lines == 1 or math.isclose(pitch_mm, other_mm, rel_tol=PITCH_TOLERANCE)
+        for lines, pitch_mm, other_mm in (columns, rows)
     )
 
 
