@@ -158,7 +158,11 @@ def test_what_nests_too_deep_is_refused_before_it_is_gone_through():
     assert f"nests more than {MOST_DEPTH} deep" in refusal(deep)
     chain = {f"t{n}": Use(name=f"t{n + 1}") for n in range(500)}
     assert "uses uses more than" in refusal(**chain, t500=Uniform())
-    long = {f"t{n}": Group(parts=(Group(parts=(Use(name=f"t{n + 1}"),)),)) for n in range(30)}
+    long = {}
+    for n in range(30):
+        long[f"t{n}"] = Use(name=f"t{n + 1}")
+        for _ in range(28):
+            long[f"t{n}"] = Group(parts=(long[f"t{n}"],))
     assert "deep by what it uses" in refusal(**long, t30=Uniform())
 
 

@@ -14,6 +14,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from vbraille.braille.cells import Cells
+from vbraille.braille.spelling import to_braille
 from vbraille.layout.wrapping import wrap
 from vbraille.translate.blocks import BlockKind
 from vbraille.translate.braillefiles import DUBLIN_CORE, PEF_NAMESPACE
@@ -26,9 +27,7 @@ if TYPE_CHECKING:
 
     Rows = Sequence[bytes]
 
-FORM_FEED = b"\f"
-_SIX_DOTS = bytes(range(64))
-_BRF = Cells.bare(np.arange(64, dtype=np.uint8)).to_brf().encode("ascii").ljust(256)
+FORM_FEED, _BLANK = b"\f", b"\0"
 
 
 def cut_pages(rows: Iterable[bytes], lines: int) -> Iterator[list[bytes]]:
@@ -90,14 +89,8 @@ def brf_lines(rows: Iterable[bytes]) -> bytes:
     ValueError
         If a cell has dot 7 or 8, which BRF cannot write.
     """
-    return b"".join(map(_brf_line, rows))
-
-
-def _brf_line(row: bytes) -> bytes:
-    masks = row.rstrip(b"\0")
-    if masks.translate(None, _SIX_DOTS):
-        Cells.bare(np.frombuffer(masks, np.uint8)).to_brf()  # says which cell it is
-    return masks.translate(_BRF) + b"\n"
+    lines = (Cells.bare(np.frombuffer(row.rstrip(_BLANK), np.uint8)).to_brf() for row in rows)
+    return "".join(f"{line}\n" for line in lines).encode("ascii")
 
 
 def identifier(sha256: str, *made_with: object) -> str:
@@ -133,7 +126,7 @@ def pef(
         f"      <section>\n"
     ).encode()
     for page in pages:
-        inner = "".join(f"          <row>{_patterns(row)}</row>\n" for row in page)
+        inner = "".join(f"          <row>{to_braille(row.rstrip(_BLANK))}</row>\n" for row in page)
         yield f"        <page>\n{inner}        </page>\n".encode()
     yield b"      </section>\n    </volume>\n  </body>\n</pef>\n"
 
@@ -142,7 +135,3 @@ def escaped(text: str) -> str:
     """Text as XML has it, with the control characters named that XML cannot have."""
     plain = printable(" ".join(text.split())).encode("utf-8", "replace").decode()
     return escape(plain.replace("\ufffe", "\ufffd").replace("\uffff", "\ufffd"), {'"': "&quot;"})
-
-
-def _patterns(row: bytes) -> str:
-    return Cells.bare(np.frombuffer(row.rstrip(b"\0"), np.uint8)).to_unicode()

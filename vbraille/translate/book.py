@@ -134,7 +134,7 @@ class Book:
     def _find_table(self, language: str) -> BrailleTable:
         own = self.table
         assert own is not None
-        named = own.info.language if own.info is not None else own.name.partition("-")[0]
+        named = own.info.language or own.name.partition("-")[0]
         known = [tag for tag in (self.language, self.source.language) if tag] or [named]
         try:
             usual = find_table(language)

@@ -39,6 +39,7 @@ _FORMS = {
 }
 _LOOKS = {"b": "b", "i": "i", "u": "u", "strike": "s", "dstrike": "s", "vanish": HIDDEN}
 _RAISED = {"superscript": "sup", "subscript": "sub"}
+_TEXTS = {"noBreakHyphen": "\u2011", "tab": "\t", "ptab": "\t"}
 _OFF = frozenset(("0", "false", "none", "off"))
 _NAMES = names("docx")
 _SKIPPED, _DRAWN = _NAMES["skipped"], _NAMES["drawn"]
@@ -120,9 +121,9 @@ class _Docx(Document):
             case "hyperlink":
                 anchor = element.get("anchor")
                 address = self._links.get(element.get("id"), "") + (f"#{anchor}" if anchor else "")
-                self._inner(element, _put_link(into, address), look)
+                self._inner(element, into.add("a", href=address), look)
             case "fldSimple":
-                self._inner(element, _put_link(into, _target(element.get("instr"))), look)
+                self._inner(element, into.add("a", href=_target(element.get("instr"))), look)
             case "fldChar":
                 self._field(element, into)
             case "instrText" if self._fields:
@@ -132,8 +133,7 @@ class _Docx(Document):
             case "oMath" | "oMathPara":
                 into.add("math").children.append(element)
             case "t" | "noBreakHyphen" | "tab" | "ptab":
-                text = element.text if element.name == "t" else "\t"
-                self.say(into, "\u2011" if element.name == "noBreakHyphen" else text, look)
+                self.say(into, _TEXTS.get(element.name, element.text), look)
             case "sym":
                 sign = symbol(_hexadecimal(element.get("char")), element.get("font"))
                 self.say(into, sign, look)
@@ -225,7 +225,7 @@ class _Docx(Document):
                 state = _value(box, "checked", _value(box, "default", "0"))
                 into.say("☐" if state in _OFF else "☑")
         elif kind == "separate" and self._fields and _target(self._fields[-1]):
-            self._link = _put_link(into, _target(self._fields[-1]))
+            self._link = into.add("a", href=_target(self._fields[-1]))
         elif kind == "end" and self._fields and _target(self._fields.pop()):
             self._link = None
 
@@ -316,11 +316,6 @@ def _value(holder: Element, path: str, otherwise: str = "") -> str:
     """Value of the element at a path; "" for one without a value, and another for none."""
     found = _find(holder, path)
     return found.get("val") if found.name else otherwise
-
-
-def _put_link(into: Element, address: str) -> Element:
-    """Put a link, for the text of one; without an address the text stands where it is."""
-    return into.add("a", href=address) if address else into
 
 
 def _target(instruction: str) -> str:

@@ -243,10 +243,7 @@ def _refused(stream: BinaryIO, sample: bytes) -> str:
     if said:
         return said
     if sample[60:68] in (b"BOOKMOBI", b"TEXtREAd"):
-        first = int.from_bytes(sample[78:82])  # where the first record is, which tells of a lock
-        if int.from_bytes(sample[first + 12 : first + 14]):
-            return "a Kindle book with Amazon's lock; get it as EPUB without a lock"
-        return "a Kindle book (MOBI); save it as EPUB"
+        return "a Kindle book (MOBI); save it as EPUB, without Amazon's lock if it has one"
     if not sample.startswith(_OLE):
         return ""
     stream.seek(0)

@@ -16,7 +16,7 @@ BETWEEN = "  "  # cells of a row
 # Three unspaced dots 5, as the Braille Authority of North America writes an empty cell.
 EMPTY = Block("⠐⠐⠐")
 EMPHASES = (MarkKind.BOLD, MarkKind.ITALIC, MarkKind.UNDERLINE)
-_MOST = 1_000  # columns or rows that one cell covers
+_MOST = 1_000  # columns up to which a cell may cover several, and rows that one covers
 _LAYING_OUT = (BlockKind.HEADING, BlockKind.QUOTE, BlockKind.LINE, BlockKind.ROW, BlockKind.NOTE)
 
 
@@ -111,7 +111,8 @@ def _grid(rows: list[list[_Cell]]) -> list[list[_Cell | None]]:
         for cell in row:
             while column in lines[number]:
                 column += 1
-            columns = range(column, column + cell.spans("colspan"))
+            spanned = cell.spans("colspan")
+            columns = range(column, column + (spanned if column + spanned <= _MOST else 1))
             for line in lines[number : number + cell.spans("rowspan")]:
                 line.update(dict.fromkeys(columns, cell))
             column = columns.stop

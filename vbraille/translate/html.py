@@ -249,12 +249,12 @@ class Walker:
             self._become(BlockKind.NOTE)
         elif words & _NAMES["note_lists"]:
             self._become(notes=True)
-        start = self._next
+        start, known = self._next, len(self._marks)
         self._read(element, words)
         if len(self._text) > start:
             if tag and not is_block and not _same(tag, self._role.language or self._language):
                 self._marks.append(Mark(MarkKind.LANGUAGE, start, len(self._text), tag))
-            refers = [m for m in self._marks if m.kind is MarkKind.NOTE and m.start >= start]
+            refers = any(mark.kind is MarkKind.NOTE for mark in self._marks[known:])
             for kind in _emphases(element, words):
                 if kind in _SMALL and not refers:
                     self._text[start:] = _SMALL[kind]("".join(self._text[start:]))
@@ -268,7 +268,7 @@ class Walker:
 
     def _read(self, element: Element, words: set[str]) -> None:
         """Read an element by its name."""
-        role = self._role
+        role, kind = self._role, element.get("type").lower()
         match element.name:
             case "br":
                 self._blank = False
@@ -322,16 +322,12 @@ class Walker:
             case "a" | "noteref" | "annoref":
                 self._link(element, words)
                 return
-            case "input" if element.get("type").lower() not in ("image", "hidden"):
-                if (
-                    element.get("type").lower() != "checkbox"
-                    or "disabled" not in element.attributes
-                ):
-                    self._unshown("form field", _label(element) or element.get("value"))
-                else:
-                    self._add("☒" if "checked" in element.attributes else "☐")
-                    self._blank = True
-            case "img" | "input" if element.get("type").lower() != "hidden":
+            case "input" if kind == "checkbox" and "disabled" in element.attributes:
+                self._add("☒" if "checked" in element.attributes else "☐")
+                self._blank = True
+            case "input" if kind not in ("image", "hidden"):
+                self._unshown("form field", _label(element) or element.get("value"))
+            case "img" | "input" if kind != "hidden":
                 self._img(element, words)
             case "svg":
                 self._svg(element)
@@ -387,13 +383,10 @@ class Walker:
         address = element.get("href") or "#" + element.get("idref").lstrip("#")
         refers = self._role.refers or bool(words & _NAMES["references"]) or element.name != "a"
         refers = refers or _WORD_NOTE.match(address) is not None
-        start = self._next
+        start, known = self._next, len(self._marks)
         self._inside(element)
-        self._marks = [
-            mark
-            for mark in self._marks
-            if mark.start < start or not (refers or mark.kind is MarkKind.UNDERLINE)
-        ]
+        inner = [mark for mark in self._marks[known:] if mark.kind is not MarkKind.UNDERLINE]
+        self._marks[known:] = [] if refers else inner
         told = "".join(self._text[start:])
         if address == "#" or not told:
             return

@@ -34,7 +34,7 @@ class TableInfo:
     name
         File name, which is what `BrailleTable` takes.
     title
-        Display name.
+        Display name; empty if unsaid.
     language
         BCP 47 tag, such as ``fr`` or ``en-GB``; empty if unsaid.
     grade
@@ -46,11 +46,11 @@ class TableInfo:
     """
 
     name: str
-    title: str
-    language: str
-    grade: str
-    dots: int
-    kind: str
+    title: str = ""
+    language: str = ""
+    grade: str = ""
+    dots: int = 0
+    kind: str = ""
 
     def speaks(self, language: str) -> bool:
         """Tell whether the table is for a language, given by a tag in lower case with hyphens."""

@@ -11,6 +11,7 @@ import pickle
 import signal
 import sys
 from functools import cache
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
@@ -22,13 +23,11 @@ COMPILING_S = 20.0  # the largest tables take a second or two
 KEYS = ("language", "grade", "type", "dots", "display-name", "index-name")
 
 LIBRARY = louis.liblouis
-LIBRARY.lou_getTableInfo.restype = ctypes.c_void_p
+LIBRARY.lou_getTableInfo.restype = ctypes.c_char_p
 LIBRARY.lou_listTables.restype = ctypes.POINTER(ctypes.c_char_p)
 LIBRARY.lou_version.restype = ctypes.c_char_p
 LIBRARY.lou_getTypeformForEmphClass.restype = ctypes.c_ushort
 LIBRARY.lou_setLogLevel(60_000)
-FREE = ctypes.CDLL(None).free
-FREE.argtypes = [ctypes.c_void_p]
 
 
 def translate(
@@ -50,13 +49,11 @@ def compile_table(tables: str) -> None:
 
 def list_tables() -> list[dict[str, str]]:
     """File name and metadata of each table that has some."""
-    paths = LIBRARY.lou_listTables()
     found = []
-    for number in range(10_000):
-        path = paths[number]
-        if path is None:
-            break
-        said = {key: text_at(LIBRARY.lou_getTableInfo(path, key.encode())) for key in KEYS}
+    paths: Any = LIBRARY.lou_listTables()
+    for path in takewhile(bool, paths):
+        told = {key: LIBRARY.lou_getTableInfo(path, key.encode()) or b"" for key in KEYS}
+        said = {key: value.decode("utf-8", "replace") for key, value in told.items()}
         found.append({"name": Path(path.decode()).name, **said})
     return found
 
@@ -75,15 +72,6 @@ def display_dots(table: str, characters: str) -> list[int]:
 def version() -> str:
     """Version of liblouis."""
     return LIBRARY.lou_version().decode()
-
-
-def text_at(address: int | None) -> str:
-    """String of C, which is freed."""
-    if not address:
-        return ""
-    text = ctypes.string_at(address).decode("utf-8", "replace")
-    FREE(address)
-    return text
 
 
 def limit_processor_time(seconds: float) -> None:

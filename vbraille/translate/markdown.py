@@ -34,6 +34,7 @@ def read_markdown(source: Source, encoding: str | None = None) -> Iterator[Block
         If the encoding is unknown, or there is no text.
     """
     from markdown_it import MarkdownIt
+    from markdown_it.renderer import RendererHTML
     from mdit_py_plugins.anchors import anchors_plugin
     from mdit_py_plugins.attrs import attrs_plugin
     from mdit_py_plugins.deflist import deflist_plugin
@@ -61,7 +62,7 @@ def read_markdown(source: Source, encoding: str | None = None) -> Iterator[Block
                 # A picture without words; an `alt` would say that it is a decoration.
                 image.attrs.pop("alt")
                 image.type = "html_inline"
-                image.content = f"<img{parser.renderer.renderAttrs(image)}>"
+                image.content = f"<img{RendererHTML.renderAttrs(image)}>"
     html = parser.renderer.render(tokens, parser.options, {})
     content = html.encode("utf-8", "replace")
     root = read_tree(content, source.name, source.note, xml=False)

@@ -225,9 +225,6 @@ def low_dots(mask: int) -> int:
 def _plain_spellings(part: str) -> Iterator[str]:
     """Spellings of a sign, of a compatibility character, of a foreign digit, of a capital."""
     yield from SIGNS.get(part, ())
-    if part.isdecimal() and len(part) == 1:
-        for zero in _ZEROS:
-            yield chr(ord(zero) + unicodedata.decimal(part))
     if _flag_letter(part[0]):
         letters = "".join(map(_flag_letter, part))
         yield f"[{letters}]"

@@ -10,7 +10,7 @@ import numpy as np
 from vbraille.braille.cells import Cells
 from vbraille.errors import InputError
 from vbraille.translate.blocks import MarkKind
-from vbraille.translate.languages import find_table, list_tables, preference, tables_of
+from vbraille.translate.languages import TableInfo, find_table, list_tables, preference, tables_of
 from vbraille.translate.liblouis import LOUIS, emphasis_bit
 from vbraille.translate.spellings import Kind, Undefined
 from vbraille.translate.undefined import Written, cells_of, write
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from vbraille.translate.blocks import Mark
-    from vbraille.translate.languages import TableInfo
 
 _SIX_DOTS = 0x3F
 _SMALL = "abcdefghijklmnopqrstuvwxyz"
@@ -120,17 +119,18 @@ class BrailleTable:
         return ending, sign if rest and len(sign) < len(whole) else b""
 
     @cached_property
-    def info(self) -> TableInfo | None:
-        """Metadata of the table; None if it has none."""
-        return next((table for table in list_tables() if table.name == self.name), None)
+    def info(self) -> TableInfo:
+        """Metadata of the table; all of it is empty for one that has none."""
+        found = (table for table in list_tables() if table.name == self.name)
+        return next(found, TableInfo(self.name))
 
     @cached_property
     def eight_dots(self) -> bool:
         """Tell if the table writes with dots 7 and 8, but for letters of other scripts."""
-        if self.info is not None and self.info.dots:
+        if self.info.dots:
             return self.info.dots == 8
-        literary = self.info is not None and self.info.kind == "literary"
-        for sample in (_DIGITS, _SMALL) if literary else (_SMALL + _SMALL.upper() + _DIGITS,):
+        samples = (_SMALL + _SMALL.upper() + _DIGITS,)
+        for sample in (_DIGITS, _SMALL) if self.info.kind == "literary" else samples:
             masks = LOUIS.translate(self.name, sample).masks
             if any(masks):
                 return max(masks) > _SIX_DOTS
@@ -144,9 +144,8 @@ class BrailleTable:
     @property
     def said(self) -> str:
         """Language and grade in words, such as "German contracted braille, grade 2"."""
-        if self.info is None or not self.info.title:
-            return self.name
-        return f"{self.info.title}{f', grade {self.info.grade}' if self.info.grade else ''}"
+        grade = f", grade {self.info.grade}" if self.info.grade else ""
+        return f"{self.info.title}{grade}" if self.info.title else self.name
 
     @cached_property
     def brackets(self) -> str:
