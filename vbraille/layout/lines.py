@@ -188,10 +188,7 @@ class Layout:
         way = 1 if step > 0 else -1
         lines = self._lines_from(line.block.number, way)
         index = line.index if way > 0 else len(self.lines_of(line.block)) - 1 - line.index
-        for number, found in enumerate(lines):
-            if number == index + abs(step):
-                return found
-        return None
+        return next(islice(lines, index + abs(step), None), None)
 
     def place(self, place: int) -> tuple[Line, int] | None:
         """Line and cell that a place of the source is on; None past the end.
