@@ -103,8 +103,7 @@ class Loop(LoopState):
             If the device is gone, or says that its carriage is where none can be.
         """
         clock, device, ring = self.clock, self.device, self.ring
-        follows = self._same_rate and device.descriptor is not None
-        sample = self._next_pose() if follows else self._even_pose()
+        sample = self._next_pose()
         now_ns = clock.now_ns()
         times_ns, pose = self._times_ns, self._pose
         times_ns[0, 0] = now_ns
@@ -139,31 +138,28 @@ class Loop(LoopState):
             whole[slot, FLAGS] = (whole[slot, FLAGS] & ~_HELD) | held | _PLACING[device.placing]
         ring.publish()
 
-    def _even_pose(self) -> Pose | None:
-        """Wait until a tick is due, and read the device."""
-        device, clock = self.device, self.clock
-        if device.ahead_ns:
+    def _next_pose(self) -> Pose | None:
+        """Wait until a tick is due, or for a pose, which begins one at once; read the device.
+
+        Where none has come for too long, the tick goes without.
+        """
+        clock, device, orders = self.clock, self.device, self._orders
+        begins_ns = latest_ns = self._due_ns
+        follows = self._same_rate and device.descriptor is not None
+        if follows:
+            begins_ns, latest_ns = self._began_ns + self._guard_ns, latest_ns + self._guard_ns
+        elif device.ahead_ns:
             clock.sleep_until_ns(self._due_ns - device.ahead_ns)
             device.ask()
-        clock.sleep_until_ns(self._due_ns)
-        if self._orders is not None and clock.wait_ns((self._orders[0],), 0):
-            self._orders[1]()
-        return device.read()
-
-    def _next_pose(self) -> Pose | None:
-        """Wait for a pose, which begins a tick at once, or until none has come for too long."""
-        clock, orders = self.clock, self._orders
-        clock.sleep_until_ns(self._began_ns + self._guard_ns)
-        latest_ns = self._due_ns + self._guard_ns
+        clock.sleep_until_ns(begins_ns)
         while True:
-            descriptor = self.device.descriptor
-            waited = [] if descriptor is None else [descriptor]
+            waited = [device.descriptor] if follows and device.descriptor is not None else []
             if orders is not None:
                 waited.append(orders[0])
             ready = clock.wait_ns(waited, latest_ns)
             if orders is not None and orders[0] in ready:
                 orders[1]()
-            sample = self.device.read()
+            sample = device.read()
             if sample is not None or clock.now_ns() >= latest_ns:
                 return sample
 
@@ -258,9 +254,8 @@ class LocalEngine(Loop, Watcher):
 
     def give(self, order: HandOrder) -> None:
         """Tell a simulated hand what to do; nothing happens where a person moves the device."""
-        obey = getattr(self.device, "obey", None)
-        if obey is not None:
-            obey(order)
+        if self.steered:
+            self.device.obey(order)  # pyright: ignore[reportAttributeAccessIssue]
 
     def poll(self) -> NDArray[np.void]:
         """Do some ticks; return their records."""

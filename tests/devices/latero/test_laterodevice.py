@@ -150,17 +150,6 @@ def test_two_programs_on_one_latero(latero):
     open_latero(address_of(latero), None).close()
 
 
-def test_a_driver_that_was_stopped_goes_on_from_rest(latero):
-    with open_latero(address_of(latero), None) as device:
-        ticks(device, np.ones((8, 8)), found=lambda *_: (latero.board.levels == 0).all())
-        until(lambda: latero.board.at_rest)
-        assert device.write(np.ones((8, 8))) is False
-        assert latero.board.at_rest
-        ticks(device, np.ones((8, 8)), found=lambda *_: (latero.board.levels == 0).all())
-        assert device.rested == 2
-        assert device.watchdog_trips == 1
-
-
 class Peer:
     """A peer at a port that answers with what a function makes of a request."""
 
@@ -225,16 +214,6 @@ def test_who_else_may_answer_is_said_in_a_sentence(make, why):
     with pytest.raises(DeviceError, match=why):
         open_latero(peer.address, None, now_ns=lambda: now_ns[0], pause=pause)
     peer.socket.close()
-
-
-def test_a_port_where_nobody_listens():
-    now_ns = [0]
-
-    def pause(seconds):
-        now_ns[0] += round(seconds * 1e9)
-
-    with pytest.raises(DeviceError, match=r"no Latero answers at 127\.0\.0\.1:9"):
-        open_latero("127.0.0.1:9", None, now_ns=lambda: now_ns[0], pause=pause)
 
 
 def test_a_host_that_is_none():
