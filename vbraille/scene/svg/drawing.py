@@ -31,7 +31,7 @@ from vbraille.scene.svg.document import (
     target_of,
     title_of,
 )
-from vbraille.scene.svg.labels import TextReader
+from vbraille.scene.svg.labels import labels_of
 from vbraille.scene.svg.looks import LEAST_SHARE, ClassLook, dashes_of, fill_of, stroke_of
 from vbraille.scene.svg.outlines import MOST_POINTS, SHAPES, TOO_FAR
 from vbraille.scene.svg.styles import INITIAL, StyleSheets
@@ -60,6 +60,7 @@ if TYPE_CHECKING:
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.svg.document import Element
     from vbraille.scene.svg.outlines import Contour, Ring
+    from vbraille.scene.svg.styles import Style
     from vbraille.scene.svg.values import Box, Point
     from vbraille.scene.traversal import Steps
 
@@ -119,7 +120,7 @@ class _Place:
 
     matrix: AffineMap
     units: Units
-    style: Mapping[str, str]
+    style: Style
     look: ClassLook | None = None
     strength: float = 1.0
     clip: list[Ring] | None = None
@@ -253,7 +254,6 @@ class SvgDrawing:
             self._sheets = StyleSheets(root, self.note)
         except InputError as error:
             raise InputError(f"{name}: {error}") from None
-        self._texts = TextReader(self._sheets, self._ids, self.note)
         self._style = self._sheets.of(root, INITIAL, Units())
         self.size_px = size_px(root, self._style, name)
         self._units = Units(self.size_px, self.size_px)
@@ -417,10 +417,9 @@ class SvgDrawing:
         if place.cutting is not None:
             self.note(element, "a text does not cut; it is ignored")
             return []
-        amplitude = round(place.strength, 4)
-        labels = self._texts.labels(element, place.matrix, place.style, place.units)
+        labels = labels_of(self._sheets, self._ids, element, place.matrix, place.style, place.units)
         return [
-            DrawnNode(replace(label, amplitude=amplitude), one.sourceline or 0)
+            DrawnNode(replace(label, amplitude=round(place.strength, 4)), one.sourceline or 0)
             for one, label in labels
         ]
 
@@ -478,10 +477,8 @@ class SvgDrawing:
             return []
         fill, lines = self._look_of_shape(element, name, place)
         width = lines["stroke"].width_mm if lines.get("stroke") else 0.0
-        if place.clip and contours:
-            box = outlines.box_of(contours, width / 2)
-            if outlines.is_within(box, place.clip):
-                place = changed(place, clip=None)
+        if place.clip and contours and outlines.is_within(contours, width / 2, place.clip):
+            place = changed(place, clip=None)
         patterns: list[AnyPattern] = []
         if fill is not None or lines:
             patterns = self._patterns(element, name, contours, place, fill, lines)
@@ -676,9 +673,9 @@ class SvgDrawing:
             clip = outlines.cut(clip, place.clip)
         return changed(place, clip=clip)
 
-    def _style_around(self, element: Element) -> Mapping[str, str]:
+    def _style_around(self, element: Element) -> Style:
         """Style of the elements around one that is used from elsewhere."""
-        style: Mapping[str, str] = INITIAL
+        style = INITIAL
         for one in reversed(list(element.iterancestors())):
             style = self._sheets.of(one, style, self._units)
         return style
@@ -691,49 +688,48 @@ class SvgDrawing:
         if start is middle is end is None or place.depth >= _MOST_DEPTH:
             return []
         corners = outlines.corners_of(segments)
-        found: list[DrawnNode] = []
-        for number, corner in enumerate(corners):
-            last = number == len(corners) - 1
-            here = [start] * (number == 0) + [middle] * (number > 0 and not last) + [end] * last
-            for marker in here:
-                if marker is not None and name_of(marker) == "marker":
-                    found += self._marker(marker, corner, place, turn=180.0 * (number == 0))
-        return found
+        at_ends = [
+            (start, corners[:1], 180.0),
+            (middle, corners[1:-1], 0.0),
+            (end, corners[-1:], 0.0),
+        ]
+        return [
+            node
+            for marker, here, turn in at_ends
+            if marker is not None and name_of(marker) == "marker"
+            for node in self._marker(marker, here, place, turn)
+        ]
 
     def _marker(
-        self, marker: Element, corner: outlines.Corner, place: _Place, turn: float
+        self, marker: Element, corners: list[outlines.Corner], place: _Place, turn: float
     ) -> list[DrawnNode]:
-        """Patterns of a marker at a vertex; ``turn`` is what auto-start-reverse adds there."""
-        self._elements += 1
-        units, style = place.units, place.style
+        """Patterns of a marker at vertices; ``turn`` is what auto-start-reverse adds there."""
+        units = place.units
         size = units.place(marker.get("markerWidth", "3"), marker.get("markerHeight", "3"))
-        width = units.length(style["stroke-width"], units.diagonal) or 0.0
-        unit = 1.0 if marker.get("markerUnits") == "userSpaceOnUse" else width
-        if min(size.real, size.imag, unit) <= 0 or marker in self._used:
+        unit = units.length(place.style["stroke-width"], units.diagonal) or 0.0
+        if marker.get("markerUnits") == "userSpaceOnUse":
+            unit = 1.0
+        style = self._sheets.of(marker, self._style_around(marker), self._units)
+        faint = share_of(style["opacity"]) <= LEAST_SHARE
+        if min(size.real, size.imag, unit) <= 0 or faint or marker in self._used:
             return []
-        orient = (marker.get("orient") or "0").strip()
-        way = corner.before + corner.after
-        degrees = math.degrees(cmath.phase(way)) if way else 0.0
-        if orient == "auto-start-reverse":
-            degrees += turn
-        elif orient != "auto":
-            degrees = angle_of(orient)
         box = (size.real, size.imag)
         view = view_box_of(marker.get("viewBox")) or (0.0, 0.0, *box)
-        how = marker.get("preserveAspectRatio") or ""
-        middle = fit(view, box, how)(units.place(marker.get("refX"), marker.get("refY")))
-        matrix = place.matrix @ AffineMap(r=corner.place) @ turned(degrees) @ AffineMap(unit)
-        inner = changed(
-            place,
-            matrix=matrix @ AffineMap(r=-middle),
-            style=self._sheets.of(marker, self._style_around(marker), self._units),
-            context=place,
-            named=False,
-            depth=place.depth + 1,
-        )
+        fitted = fit(view, box, marker.get("preserveAspectRatio") or "")
+        middle = fitted(units.place(marker.get("refX"), marker.get("refY")))
+        orient = (marker.get("orient") or "0").strip()
+        inner = changed(place, style=style, context=place, named=False, depth=place.depth + 1)
+        found: list[DrawnNode] = []
         self._used.append(marker)
-        faint = share_of(inner.style["opacity"]) <= LEAST_SHARE
-        found = [] if faint else self._in_view(marker, inner, box)
+        for corner in corners:
+            self._elements += 1
+            degrees = angle_of(orient)
+            if orient.startswith("auto"):
+                way = corner.before + corner.after
+                degrees = math.degrees(cmath.phase(way)) + turn * (orient != "auto")
+            matrix = place.matrix @ AffineMap(r=corner.place) @ turned(degrees) @ AffineMap(unit)
+            inner = changed(inner, matrix=matrix @ AffineMap(r=-middle))
+            found += self._in_view(marker, inner, box)
         self._used.pop()
         return found
 

@@ -226,10 +226,10 @@ def corners_of(segments: Path) -> list[Corner]:
             continue
         # At its very ends a curve may have no direction.
         away, arrives = (
-            way / abs(way) if abs(way) > 1e-9 else 0.0
+            way / abs(way) if abs(way) > 1e-12 else 0.0
             for way in (
-                segment.point(1e-4) - segment.start,
-                segment.end - segment.point(1 - 1e-4),
+                segment.point(1e-5) - segment.start,
+                segment.end - segment.point(1 - 1e-5),
             )
         )
         last = corners[-1]
@@ -312,18 +312,13 @@ def stroked(contours: Sequence[Contour], width_mm: float) -> list[Ring]:
     return _rings(offset.Execute(width_mm / 2 * _PER_MM))
 
 
-def box_of(contours: Sequence[Contour], reach_mm: float) -> Ring:
-    """Rectangle around contours, and so far around them."""
+def is_within(contours: Sequence[Contour], reach_mm: float, clip: list[Ring]) -> bool:
+    """Tell whether the rectangle around contours, and so far around them, is within an area."""
     xs, ys = zip(*(place for one in contours for place in one.ring), strict=True)
     reach = round(reach_mm * _PER_MM)
     left, top, right, bottom = min(xs) - reach, min(ys) - reach, max(xs) + reach, max(ys) + reach
-    return [(left, top), (right, top), (right, bottom), (left, bottom)]
-
-
-def is_within(ring: Ring, clip: list[Ring]) -> bool:
-    """Tell whether a ring is wholly within an area, but for a thousandth of it."""
-    inside = sum(map(pyclipper.Area, cut([ring], clip)))
-    return abs(inside) >= abs(pyclipper.Area(ring)) * 0.999
+    box = [(left, top), (right, top), (right, bottom), (left, bottom)]
+    return [sorted(ring) for ring in cut([box], clip)] == [sorted(box)]
 
 
 def ring_of(places_mm: Iterable[complex]) -> Ring:

@@ -114,7 +114,7 @@ class StyleSheets:
     """
 
     def __init__(self, root: Element, note: Callable[[Element, str], None]) -> None:
-        self._note = note
+        self.note = note
         self._matcher = cssselect2.Matcher()
         self._matched: dict[Element, list[Declaration]] = {}
         sheets = [element for element in root.iter() if name_of(element) == "style"]
@@ -142,25 +142,25 @@ class StyleSheets:
             if rule.type == "qualified-rule":
                 self._add(element, rule, written)
             elif rule.type != "at-rule":
-                self._note(element, "a part of the style sheet is not understood; it is ignored")
+                self.note(element, "a part of the style sheet is not understood; it is ignored")
             elif rule.lower_at_keyword == "media" and written.lower() in _MEDIA:
                 self._take(element, tinycss2.parse_rule_list(rule.content or (), True, True))
             elif (rule.lower_at_keyword, written.lower()) != ("media", "print") and (
                 rule.lower_at_keyword not in ("charset", "font-face", "namespace")
             ):
                 at_rule = short(f"@{rule.at_keyword} {written}")
-                self._note(element, f"the style sheet's {at_rule} is ignored")
+                self.note(element, f"the style sheet's {at_rule} is ignored")
 
     def _add(self, element: Element, rule: Any, written: str) -> None:
         """Add a rule to those that elements are matched with."""
         parts = written.split(",")
         if any(len(_COMBINATOR.findall(one.strip())) > _MOST_COMBINED for one in parts):
-            self._note(element, f"the style sheet's selector {short(written)!r} is too long")
+            self.note(element, f"the style sheet's selector {short(written)!r} is too long")
             return
         try:
             selectors = cssselect2.compile_selector_list(rule.prelude)
         except cssselect2.SelectorError:
-            self._note(element, f"the style sheet's selector {short(written)!r} is ignored")
+            self.note(element, f"the style sheet's selector {short(written)!r} is ignored")
             return
         declared, _ = _declarations(tinycss2.serialize(rule.content))
         for selector in selectors:
@@ -190,7 +190,7 @@ class StyleSheets:
         said += [*self._matched.get(element, ()), *own]
         for name, value, _ in [*wrong, *others]:
             if value:
-                self._note(
+                self.note(
                     element, f"its {name} {short(value, 40)!r} is not understood; it is ignored"
                 )
         inherited = {name: above[name] for name in _INHERITED}

@@ -311,14 +311,13 @@ def fit(view: Box, size: Point, how: str) -> AffineMap:
     left, top, width, height = view
     across, down = size[0] / width, size[1] / height
     words = how.split()
-    if "none" in words:
-        return affine(across, 0.0, 0.0, down, -left * across, -top * down)
+    if "none" not in words:
+        across = down = max(across, down) if "slice" in words else min(across, down)
     align = next((word for word in words if word.startswith("x")), "xMidYMid")
-    factor = max(across, down) if "slice" in words else min(across, down)
     shares = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
-    x, y = shares.get(align[1:4], 0.5), shares.get(align[5:8], 0.5)
-    start = complex(x * (size[0] - width * factor), y * (size[1] - height * factor))
-    return AffineMap(factor, 0.0, start - factor * complex(left, top))
+    x = shares.get(align[1:4], 0.5) * (size[0] - width * across) - left * across
+    y = shares.get(align[5:8], 0.5) * (size[1] - height * down) - top * down
+    return affine(across, 0.0, 0.0, down, x, y)
 
 
 class Color(NamedTuple):
