@@ -52,26 +52,24 @@ class Measured(Table, frozen=True, kw_only=True):
     """
 
     def __post_init__(self) -> None:
-        for name, check in _checks(type(self)):
-            check(words_of(name), getattr(self, name))
+        for name, words, check in _checks(type(self)):
+            check(words, getattr(self, name))
         by = getattr(self, "velocity_by", "")
-        if by and getattr(self, "velocity_mm_s", getattr(self, "velocity_deg_s", 0.0)) in (
-            0,
-            (0, 0),
-        ):
+        speed = getattr(self, "velocity_mm_s", 0) or getattr(self, "velocity_deg_s", 0)
+        if by and speed in (0, (0, 0)):
             raise ValueError(f"velocity_by is {by!r} without a velocity; add one, or leave it out")
 
 
 @cache
-def _checks(kind: type[Measured]) -> list[tuple[str, _Check]]:
-    """Functions that check the fields of a table that have limits, with the names of these."""
-    found = (
-        (name, _check_of(hint)) for name, hint in get_type_hints(kind, include_extras=True).items()
-    )
-    return [(name, check) for name, check in found if check is not None]
+def _checks(kind: type[Measured]) -> list[tuple[str, str, _Check]]:
+    """Names, words and checks of the fields of a table that have limits."""
+    hints = get_type_hints(kind, include_extras=True)
+    found = ((name, words_of(name), _check_of(hint)) for name, hint in hints.items())
+    return [(name, words, check) for name, words, check in found if check is not None]
 
 
 def _check_of(hint: Any) -> _Check | None:
+    """Function that checks values of a type, places and lists too; None if it has no limits."""
     inner = get_args(hint)
     if get_origin(hint) is Annotated:
         low, high, unit = inner[1].extra["limits"]
