@@ -550,7 +550,7 @@ class _Writer:
             reach = max(reach, drawn_radius_mm(shape) + fill.gap_mm + fill.fade_mm)
         if fill is None and stroke is None and not shape.is_cued_over:
             return
-        rounded = is_along and _is_rounded(shape)
+        rounded = is_along and isinstance(shape, Polygon) and shape.join == "rounded"
         segments = list(paths.segments_of(shape, rounded=rounded))
         size = len(segments[0])
         self.say(i.PATH, work.CODE + len(self.numbers) + i.HEAD)
@@ -568,10 +568,7 @@ class _Writer:
             if fill is not None:
                 with self._gate(box._replace(left=-_FAR)):
                     self.say(i.CROSSINGS, begin, end, size)
-        moves = along is not None and paths.cycles_differ(shape)
-        velocity = along.velocity_mm_s if along is not None and moves else 0.0
-        clock = self._clock(along.velocity_by) if along is not None else -1.0
-        self.say(i.MEASURED, rounded, velocity, clock)
+        self.say(i.MEASURED, rounded)
 
     def _drawn(self, shape: paths.AnyShape, *, is_mask: bool, is_textured: bool = True) -> None:
         """Write the profile of what a shape is drawn with, or its dots."""
@@ -626,11 +623,10 @@ class _Writer:
         # What an outline leaves out, γ_o of eq. 8.9, ends where its own edge begins.
         groove = _profile(stroke.width_mm - 2 * stroke.edge, stroke.edge)
         if along is not None:
-            cycle, velocity = stroke_cycles(shape)[0], along.velocity_mm_s
-            if paths.cycles_differ(shape):  # the places along it are in ridges already
-                cycle, velocity = Cycle(1.0, 0.0), 0.0
-            clock = self._clock(along.velocity_by)
-            self.say(i.BANDS, velocity, clock, cycle.length, cycle.ridge, along.amplitude, 0.0)
+            cycles, clock = stroke_cycles(shape), self._clock(along.velocity_by)
+            cycle = cycles[0].length, cycles[0].ridge
+            own = along.amplitude, len(set(cycles)) > 1
+            self.say(i.BANDS, along.velocity_mm_s, clock, *cycle, *own)
             if along.whole_edges:
                 self.say(i.PROFILE, *groove)
                 self.say(i.MULTIPLY)
@@ -652,8 +648,7 @@ class _Writer:
         if cue.way == "add":
             self._scale(1.0 - cue.share)
         cycle, clock = cue_cycle(shape), self._clock(cue.velocity_by)
-        on_arcs = float(_is_rounded(shape))
-        self.say(i.BANDS, cue.velocity_mm_s, clock, cycle.length, cycle.ridge, 1.0, on_arcs)
+        self.say(i.BANDS, cue.velocity_mm_s, clock, cycle.length, cycle.ridge, 1.0, 0.0)
         if shape.is_cued_over:
             self.say(i.PROFILE, *_profile(shape.cue_width_mm, shape.cue_edge_mm))
             self.say(i.MULTIPLY)
@@ -670,11 +665,6 @@ class _Writer:
         }[cue.way]
         self.say(i.CUE, shows, hides, *_swing(cue.swing))
         self.say(i.OVER)
-
-
-def _is_rounded(shape: paths.AnyShape) -> bool:
-    """Tell whether places along a shape follow round corners, or lie in ridges of its own."""
-    return (isinstance(shape, Polygon) and shape.join == "rounded") or paths.cycles_differ(shape)
 
 
 def _profile(

@@ -25,7 +25,6 @@ from vbraille.render.patternkernels import (
     dots,
     grating,
     image,
-    in_ridge,
     markers,
     moved,
     nearest,
@@ -44,7 +43,6 @@ from vbraille.render.work import (
     LIVE_ROW,
     MOST_SIGNALS,
     PART_ROW,
-    PLACE_ROW,
     RIGHT_MM,
     SIGN_ROW,
     STACK_ROW,
@@ -168,8 +166,8 @@ def _evaluate(numbers, table, rows, count, time):
     it has noise from -1 to 1 that stands for vibrations. The row `GIVEN_ROW` has the signals.
     """
     x, y, sign = rows[X_ROW], rows[Y_ROW], rows[SIGN_ROW]
-    across, along, place = rows[ACROSS_ROW], rows[ALONG_ROW], rows[PLACE_ROW]
-    inside, part, given = rows[INSIDE_ROW], rows[PART_ROW], rows[GIVEN_ROW]
+    across, along, inside = rows[ACROSS_ROW], rows[ALONG_ROW], rows[INSIDE_ROW]
+    part, given = rows[PART_ROW], rows[GIVEN_ROW]
     width, above = rows.shape[1], STACK_ROW  # the row above the uppermost value
     for k in range(_find_live(numbers, rows, count)):
         here = int(rows[LIVE_ROW + k // width, k % width])
@@ -249,11 +247,8 @@ def _evaluate(numbers, table, rows, count, time):
             for n in range(count):
                 across[n] = math.sqrt(across[n])
             if own[0] != 0.0:
-                shift = moved(own[1:], given, time)
                 for n in range(count):
-                    segment = numbers[int(part[n]) :]
-                    place[n] = rounded(segment, x[n], y[n], along[n])
-                    along[n] = in_ridge(segment, place[n] - shift)
+                    along[n] = rounded(numbers[int(part[n]) :], x[n], y[n], along[n])
         elif operation == INSIDE:
             begins, slope = own[0], own[1]
             for n in range(count):
@@ -262,9 +257,13 @@ def _evaluate(numbers, table, rows, count, time):
             profile(own, across, new, count)
         elif operation == BANDS:
             cycle, length, height, shift = own[2], own[3], own[4], moved(own, given, time)
-            places = place if own[5] != 0.0 else along
-            for n in range(count):
-                new[n] = height * ridge(places[n] - shift, cycle, length)
+            if own[5] == 0.0:
+                for n in range(count):
+                    new[n] = height * ridge(along[n] - shift, cycle, length)
+            else:  # each contour has a cycle of its own
+                for n in range(count):
+                    segment = numbers[int(part[n]) :]
+                    new[n] = height * ridge(along[n] - shift, segment[14], segment[13])
         elif operation == MARKERS:
             for n in range(count):
                 number = int(numbers[int(part[n]) + 12])

@@ -10,7 +10,7 @@ import math
 from vbraille.render.cellkernels import BEFORE, ONLY, find_dots, highest_dot
 from vbraille.render.evaluating import show
 from vbraille.render.frames import copy
-from vbraille.render.signalkernels import begin, compute
+from vbraille.render.signalkernels import compute
 from vbraille.render.waves import compiled as _compiled
 from vbraille.render.work import (
     APART,
@@ -188,7 +188,7 @@ def poses(numbers, table, scratch, at, made, parts, out):
     ``at`` is float64[n, AT], each row as `frame` takes it, in order of time; ``parts``, int64[n],
     and ``out``, float[n, rows, columns], are filled. An array that is turned too far is at rest.
     Signals are computed, too: they begin as when the picture is first shown, unless the first row
-    has what they remember; without it the first number of that is NaN. In ``made``, float64[rows,
+    has what they remember; without it that is NaN. In ``made``, float64[rows,
     columns], frames are made as ticks make them, so that `frame` is compiled once.
     """
     part = NO_PART
@@ -199,7 +199,6 @@ def poses(numbers, table, scratch, at, made, parts, out):
                 at[n, k] = at[n - 1, k]
             compute(numbers, at[n], max(at[n, TIME] - at[n - 1, TIME], 0.0))
         elif numbers[KIND] == SCENE and math.isnan(at[0, MEMORY]):
-            begin(numbers, at[0])
             compute(numbers, at[0], 0.0)
         part = part_of(numbers, at[n, Y], part)
         parts[n] = part

@@ -9,7 +9,6 @@ import itertools
 import math
 from typing import TYPE_CHECKING
 
-from vbraille.render.patternkernels import CORNER_NUMBERS
 from vbraille.scene.bounds import drawn_radius_mm
 from vbraille.scene.dotting import rows_of
 from vbraille.scene.joints import (
@@ -31,20 +30,14 @@ if TYPE_CHECKING:
 AnyShape = StraightLine | Circle | Polygon | PathShape
 Numbers = tuple[float, ...]
 _FAR = 1e30  # stands for infinity
-_NO_CORNER = (-_FAR, *(0.0,) * (CORNER_NUMBERS - 1))
-
-
-def cycles_differ(shape: AnyShape) -> bool:
-    """Tell whether textures along the contours of a shape have cycles of their own."""
-    return len(set(stroke_cycles(shape))) > 1
 
 
 def segments_of(shape: StraightLine | Polygon | PathShape, *, rounded: bool) -> Iterator[Numbers]:
     """Numbers of the segments of a shape, with those of their corners if these are rounded."""
     contours, closed = shape.outline
-    cycles = stroke_cycles(shape) if cycles_differ(shape) else ()
+    cycles = stroke_cycles(shape)
     corners: list[tuple[Numbers, float]] = []
-    if rounded and isinstance(shape, Polygon) and shape.join == "rounded":
+    if rounded and isinstance(shape, Polygon):
         middles = places_along_mm(shape)
         found = joints(shape.vertices_mm, rounding_radius_mm(shape))
         for corner, middle_mm in zip((*found, found[0]), middles, strict=True):
@@ -63,11 +56,10 @@ def segments_of(shape: StraightLine | Polygon | PathShape, *, rounded: bool) -> 
                 half = _half(straight[i - 1], segment)
             if i < count - 1 or closed:
                 end_half = (*_half(segment, straight[(i + 1) % count]), 0.0)
-            start, end = _NO_CORNER, _NO_CORNER
-            own_mm = begin_mm
+            own_mm, ends = begin_mm, ()
             if corners:
                 (start, own_mm), (end, _) = corners[i : i + 2]
-            ends = (*start, *end) if rounded else ()
+                ends = (*start, *end)
             yield (*segment, *half, *end_half, own_mm, float(i), *texture, *ends)
             begin_mm += segment[4]
 

@@ -108,7 +108,8 @@ def nearest(numbers, first, end, size, x, y, square, along, part, count):
 
     Numbers of each: start, direction, length, y of its end; then how a corner is halved between the
     two segments that meet there: side of the bisector at the start, and at the end with a bias by
-    which an open end has no other side; then how far along the path it begins. Eqs. 8.15-8.17.
+    which an open end has no other side; then how far along the path it begins, its number, and the
+    ridge and cycle of the texture along its contour. Eqs. 8.15-8.17.
     """
     for number in range(first, end, size):
         own = numbers[number:]
@@ -159,16 +160,6 @@ def rounded(segment, x, y, along):
     onward, outward = dx * corner[3] + dy * corner[4], -(dx * corner[5] + dy * corner[6])
     turn = min(max(math.atan2(onward, outward), -corner[8]), corner[8])
     return corner[9] + corner[7] * turn
-
-
-@compiled
-def in_ridge(segment, place):
-    """Place within the stroke's ridge, if it is in one, where contours have their own cycles."""
-    length, cycle = segment[13], segment[14]
-    if length == 0.0:
-        return place
-    place -= cycle * math.floor(place / cycle)
-    return min(place / length, 1.0)
 
 
 @compiled

@@ -197,7 +197,7 @@ class Program:
         at[:, work.TIME] = time_s
         at[:, work.VX : work.VY + 1] = velocity_mm_s
         at[:, work.SWITCHES] = switches
-        at[:1, work.MEMORY] = np.nan
+        at[:1, work.MEMORY :] = np.nan
         before = 0
         if going_on and self._last is not None:
             at = np.concatenate([self._last, at])

@@ -37,14 +37,7 @@ _LONG_S = 1e9
 def begin(numbers, at):
     """Have signals remember that all has been for long as it is, when a picture is first shown."""
     for n in range(int(numbers[SIGNALS])):
-        kind = numbers[SIGNAL_ROWS + SIGNAL_NUMBERS * n]
-        at[MEMORY + n] = 0.0
-        if kind == SPEED:
-            at[MEMORY + n] = _LONG_S
-        elif kind == DIRECTION:
-            at[MEMORY + n] = 1.0
-        elif kind == SWITCH:
-            at[MEMORY + n] = math.nan
+        at[MEMORY + n] = math.nan
 
 
 @compiled
@@ -61,9 +54,11 @@ def compute(numbers, at, passed_s):
         first = SIGNAL_ROWS + SIGNAL_NUMBERS * n
         kind, own = numbers[first], numbers[first + 1 : first + SIGNAL_NUMBERS]
         before = at[MEMORY + n]
+        is_first = before != before
         if kind == SPEED:
             value, delay = _falling(speed, own[0], own[1]), own[2]
-            before = before + passed_s if speed < own[1] else 0.0
+            before = _LONG_S if is_first else before + passed_s
+            before = before if speed < own[1] else 0.0
             if before < 2.0 * delay:  # eq. 9.7
                 value *= max(before - delay, 0.0) / delay
         elif kind == DIRECTION:
@@ -82,7 +77,7 @@ def compute(numbers, at, passed_s):
             state = int(at[SWITCHES]) >> (SWITCH_BITS * n) & ((1 << SWITCH_BITS) - 1)
             value = own[2 + min(state, int(own[1]) - 1)]
             most = passed_s / own[0] if own[0] > 0.0 else 1.0
-            if before == before:
+            if not is_first:
                 value = before + min(max(value - before, -most), most)
             before = value
         elif kind == CLOCK:
@@ -98,8 +93,8 @@ def compute(numbers, at, passed_s):
                 value *= at[SIGNAL + int(own[3 + k])]
             value += own[1]
         else:
-            before += passed_s * at[SIGNAL + int(own[0])]
-            value = before
+            value = passed_s * at[SIGNAL + int(own[0])] + (0.0 if is_first else before)
+            before = value
         at[SIGNAL + n] = value
         at[MEMORY + n] = before
 

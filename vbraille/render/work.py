@@ -92,13 +92,12 @@ X_ROW, Y_ROW, SWING, SLOT = range(4)
 (
     SIGN_ROW,
     ACROSS_ROW,
-    ALONG_ROW,  # how far along, within ridges where contours have cycles of their own
-    PLACE_ROW,  # how far along
+    ALONG_ROW,
     INSIDE_ROW,
     PART_ROW,
     GIVEN_ROW,
     STACK_ROW,
-) = range(2, 10)
+) = range(2, 9)
 DEPTH = 32  # values on the evaluator's stack
 LIVE_ROW = STACK_ROW + DEPTH + 1
 # How long a scene that moves by itself is shown to a hand that does not, s.
