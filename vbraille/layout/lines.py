@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from array import array
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import lru_cache, partial
@@ -173,7 +172,7 @@ class Layout:
     def __init__(self, book: Book, width: int) -> None:
         self.book, self.width = book, width
         self._lines = lru_cache(_REMEMBERED)(lambda block: lay_out(block, book, width))
-        self._before = array("q", [0])  # numbers of lines before each block, as far as counted
+        self._before = [0]  # numbers of lines before each block, as far as counted
 
     def first(self) -> Line | None:
         """First line of the book; None if it has none."""
@@ -189,10 +188,7 @@ class Layout:
         way = 1 if step > 0 else -1
         lines = self._lines_from(line.block.number, way)
         index = line.index if way > 0 else len(self.lines_of(line.block)) - 1 - line.index
-        for number, found in enumerate(lines):
-            if number == index + abs(step):
-                return found
-        return None
+        return next(islice(lines, index + abs(step), None), None)
 
     def place(self, place: int) -> tuple[Line, int] | None:
         """Line and cell that a place of the source is on; None past the end.

@@ -50,8 +50,7 @@ def compile_table(tables: str) -> None:
 def list_tables() -> list[dict[str, str]]:
     """File name and metadata of each table that has some."""
     found = []
-    paths: Any = LIBRARY.lou_listTables()
-    for path in takewhile(bool, paths):
+    for path in takewhile(lambda path: path is not None, LIBRARY.lou_listTables()):
         told = {key: LIBRARY.lou_getTableInfo(path, key.encode()) or b"" for key in KEYS}
         said = {key: value.decode("utf-8", "replace") for key, value in told.items()}
         found.append({"name": Path(path.decode()).name, **said})

@@ -11,21 +11,7 @@ if TYPE_CHECKING:
     from vbraille.translate.trees import Element
 
 BULLET = "• "
-_ROMAN = [
-    "m1000",
-    "cm900",
-    "d500",
-    "cd400",
-    "c100",
-    "xc90",
-    "l50",
-    "xl40",
-    "x10",
-    "ix9",
-    "v5",
-    "iv4",
-    "i1",
-]
+_ROMAN = re.findall(r"([a-z]+)(\d+)", "m1000 cm900 d500 cd400 c100 xc90 l50 xl40 x10 ix9 v5 iv4 i1")
 
 
 def numeral(number: int, form: str) -> str:
@@ -42,10 +28,9 @@ def numeral(number: int, form: str) -> str:
         return letters
     if form in ("i", "I") and 0 < number < 4000:
         text = ""
-        for sign in _ROMAN:
-            letters, value = sign.rstrip("0123456789"), int(sign.lstrip("mdclxvi"))
-            text += letters * (number // value)
-            number %= value
+        for letters, value in _ROMAN:
+            times, number = divmod(number, int(value))
+            text += letters * times
         return text.upper() if form == "I" else text
     return f"{number:02}" if form == "01" else str(number)
 
@@ -57,13 +42,14 @@ def whole(text: str | None, otherwise: int = 1) -> int:
 
 def list_markers(element: Element) -> Callable[[Element], str]:
     """Make what gives the number or bullet of each item of a list of HTML or DTBook."""
-    style = element.get("style") + element.get("list-style-type")
+    style = (element.get("style") + element.get("list-style-type")).replace(" ", "")
     is_daisy = element.name == "list"
-    if "none" in style.replace(" ", "") or (is_daisy and element.get("type", "pl") == "pl"):
+    kind = element.get("type", "pl") if is_daisy else element.name
+    if "none" in style or kind == "pl":
         return lambda _: ""
-    if element.name in ("ul", "menu") or (is_daisy and element.get("type") == "ul"):
+    if kind in ("ul", "menu"):
         return lambda _: BULLET
-    form = element.get("enum", "1") if is_daisy else element.get("type", "1")
+    form = element.get("enum" if is_daisy else "type", "1")
     step = -1 if "reversed" in element.attributes else 1
     items = sum(child.name == "li" for child in element.elements)
     following = whole(element.get("start"), items if step < 0 else 1)

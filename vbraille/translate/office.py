@@ -24,7 +24,7 @@ Look = dict[str, str]
 HIDDEN = "hidden"  # among the elements of a look: text that is not shown
 
 _NO_LANGUAGE = frozenset(("", "none", "zxx", "und", "x-none", "mul"))
-_HEADING = re.compile("heading ([1-9])|()(?:title|titel|titre)")
+_HEADING = re.compile("heading ([1-9])|title|titel|titre")
 _QUOTE = re.compile("(?:intense |block )?quote|block text|quotations")
 _CODE = re.compile("source code|html preformatted|preformatted text|plain text|code")
 _LONGEST_CHAIN = 20  # styles that are based on each other

@@ -89,7 +89,6 @@ class Source:
         self.complete = False
         self.members: Callable[[str], bytes] | None = None  # files within the book
         self._blocks: list[Block] = []
-        self._starts: list[int] = []
         self._anchors: dict[str, int] = {}
         self._end = 0
         self._text = ""
@@ -118,7 +117,6 @@ class Source:
         for name in block.anchors:
             self._anchors.setdefault(name, start)
         self._blocks.append(block)
-        self._starts.append(start)
         self._end = block.end
 
     @property
@@ -153,7 +151,9 @@ class Source:
             pass
         if place > self._end:
             return None
-        return self._blocks[max(bisect_right(self._starts, place) - 1, 0)]
+        return self._blocks[
+            max(bisect_right(self._blocks, place, key=lambda block: block.start) - 1, 0)
+        ]
 
     def anchor(self, name: str) -> int | None:
         """Place of the block with an anchor; None if there is none."""

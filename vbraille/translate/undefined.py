@@ -173,18 +173,12 @@ def _swallowed(table: str, text: str, answer: Answer) -> list[int]:
     with_cells = set(answer.places)
     swallowed = []
     for place, sign in enumerate(text):
-        if place in with_cells or not _is_undefined_alone(table, sign):
+        if place in with_cells or cells_of(table, sign):
             continue
         other = text[:place] + _STRANGER + text[place + 1 :]
         if LOUIS.translate(table, other).masks == answer.masks:
             swallowed.append(place)
     return swallowed
-
-
-@cache
-def _is_undefined_alone(table: str, sign: str) -> bool:
-    """Tell whether a table leaves a character undefined that stands alone."""
-    return bool(LOUIS.translate(table, sign).undefined)
 
 
 @cache
