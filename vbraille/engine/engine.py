@@ -25,8 +25,8 @@ HOME_MM = 1.0
 # Plain numbers, since numpy, when it reads an enumeration, can swallow what a signal raises.
 _TURNED, _UNFELT, _PAUSED = int(Flag.TURNED), int(Flag.UNFELT), int(Flag.PAUSED)
 _MARK, _STOP = int(Flag.MARK), int(Flag.STOP)
-_AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD | Flag.TURNED)
-_WHY = {
+AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD | Flag.TURNED)
+WHY = {
     int(Flag.SILENT): "the device is silent",
     _MARK | _STOP: "the device does not know where its carriage is",
     int(Flag.HELD | Flag.RESTED): "the array went to rest by itself",
@@ -106,7 +106,7 @@ class Watcher:
         if not ticks.size:
             return
         flags = ticks["flags"]
-        well = flags & _AWAY == 0
+        well = flags & AWAY == 0
         at_left = well & (ticks["x_mm"] <= HOME_MM - display.span_mm / 2)
         # A carriage that a machine moves may be at the left for a few ticks only.
         self.ready = bool(well[-1] and at_left.any())
@@ -130,7 +130,7 @@ class Watcher:
         changes = np.flatnonzero(np.diff(unfelt, prepend=self._unfelt))
         for at in sorted({*changes[:1].tolist(), *changes[-1:].tolist()}):
             tick, when = ticks[int(at)], _when(ticks[int(at)])
-            said = (why for flags, why in _WHY.items() if int(tick["flags"]) & flags)
+            said = (why for flags, why in WHY.items() if int(tick["flags"]) & flags)
             why = "ticks were lost" if lost[at] else next(said, "the array is at rest")
             self._found.append(Unfelt(why, *when) if unfelt[at] else FeltAgain(*when))
         self._unfelt = bool(unfelt[-1])

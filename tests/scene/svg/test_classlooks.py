@@ -3,7 +3,6 @@
 import pytest
 
 from tests.scene.svg.plans import NS, element_of
-from vbraille.errors import InputError
 from vbraille.scene.patterns import Fill, LinearGrating, StraightLine, UniformVibration
 from vbraille.scene.reading import open_scene
 from vbraille.scene.strokes import Dotting, Stroke
@@ -47,25 +46,6 @@ def test_a_scene_file_says_what_classes_of_the_drawings_it_includes_become(tmp_p
         f"{tmp_path / 'plan.svg'}: nothing that is shown has the class, label or id watr, "
         "which the scene speaks of"
     )
-
-
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
-        (
-            "stroke = {widht_mm = 3}",
-            "line 4: widht_mm: there is no such key; did you mean width_mm?",
-        ),
-        ("stroke = {width_mm = 0}", "line 4: width is 0 mm; it must be 0.05 to 10000 mm"),
-        ("strok = {}", "line 4: strok: there is no such key; did you mean stroke?"),
-    ],
-)
-def test_classes_that_are_not_right_are_said_with_their_line(tmp_path, line, said):
-    path = tmp_path / "my.scene"
-    path.write_text(f"[canvas]\nwidth_mm = 30\n[classes.water]\n{line}\n")
-    with pytest.raises(InputError) as refused:
-        open_scene(path)
-    assert said in str(refused.value)
 
 
 def test_a_class_may_be_dotted_or_hidden(read):

@@ -214,7 +214,7 @@ def _told(where: str, made: Callable[[], Any]) -> Any:
 
 
 def _names(protocol: Protocol) -> Faults:
-    """What would give two things one name, or one column."""
+    """Find names and columns that two things share, and names of nothing."""
     within = any(not factor.between for factor in protocol.factors)
     yield "conditions", within and protocol.listed, "are made by [[factors]]; leave one out"
     conditions = [condition.name for condition in protocol.conditions]
@@ -230,8 +230,6 @@ def _names(protocol: Protocol) -> Faults:
     for name in protocol.markers.codes:
         known = which(name, conditions)
         yield "markers.codes", name not in conditions, f"{name!r} is no condition{known}"
-    codes = protocol.markers.codes and protocol.marker_codes.values()
-    yield "markers.codes", len({*codes}) < len(codes), "give two conditions the same; name all"
     columns: set[str] = set()
     for n, item in enumerate(protocol.questionnaire):
         own = {item.name, *([f"{item.name}_correct"] if item.right else [])}
@@ -243,7 +241,7 @@ def _names(protocol: Protocol) -> Faults:
 
 
 def _shows(protocol: Protocol) -> Faults:
-    """What would not be shown as the file says, or for longer."""
+    """Find faults in how much is shown, and how."""
     design, texts, practice = protocol.design, protocol.has_texts, protocol.practice
     pictures, compared = protocol.shows_pictures, isinstance(design, Compared)
     reorders = getattr(design, "reorder", False)
@@ -275,7 +273,7 @@ def _shows(protocol: Protocol) -> Faults:
 
 
 def _asks(protocol: Protocol) -> Faults:
-    """What could not be asked, or not be answered."""
+    """Find faults in how a question is asked and answered."""
     asks, design, pace = protocol.asks, protocol.design, protocol.trial
     pictures = protocol.shows_pictures
     form = design.form or ("pictures" if pictures else "passages" if design.passage else "strings")
@@ -293,7 +291,7 @@ def _asks(protocol: Protocol) -> Faults:
 
 
 def _chooses(protocol: Protocol) -> Faults:
-    """What a procedure could not choose, or not go by."""
+    """Find faults in how a procedure chooses values, and goes by answers."""
     table, design, asks = protocol.procedure, protocol.design, protocol.asks
     if table is None:
         return
@@ -304,9 +302,6 @@ def _chooses(protocol: Protocol) -> Faults:
         bounds = table.least is not None and table.most is not None and table.least < table.most
         yield "procedure.parameter", not (table.parameter and bounds), "needs least below most"
     else:
-        twice = protocol.rules.never_twice_running
-        yield "rules.never_twice_running", twice, "is of fixed values, which [procedure] chooses"
-        yield "procedure.parameter", table.parameter, "is that of [design]; leave it out"
         right = getattr(asks, "right", "more")  # other questions have their own
         if design.reference is None:
             preferred = isinstance(table, QuestPlus) and right is None

@@ -34,7 +34,7 @@ class Showing(NamedTuple):
     Parameters
     ----------
     line
-        Its number in the ticks.
+        Number of the showing in the ticks.
     cue
         Event of its cue.
     trial, stimulus

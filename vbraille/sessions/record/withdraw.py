@@ -117,8 +117,6 @@ def _look_at(path: Path, found: Withdrawal, word: re.Pattern[str]) -> None:
         found.whole[report] = "a report, which can be made again without the person"
     elif path.suffix in TABLES and (own := _rows(path, found.participant)[0]):
         found.rows[path] = len(own)
-    elif path.suffix == ".txt" and f"participant {found.participant}, seed" in path.read_text():
-        found.whole[path] = "a plan"
     else:
         found.left.append(path)
 

@@ -18,7 +18,7 @@ from vbraille.devices.events import Button, Knob, Placing
 from vbraille.devices.registry import TRAVEL_TOLERANCE_MM, find_driver, open_device
 from vbraille.display import Display
 from vbraille.engine.batch import BatchEngine
-from vbraille.engine.engine import placing_of
+from vbraille.engine.engine import AWAY, placing_of
 from vbraille.engine.host import Host
 from vbraille.engine.record import Flag, RingReader
 from vbraille.errors import InputError
@@ -34,7 +34,6 @@ from vbraille.wording import setting
 
 # A plain number: numpy, when it reads an enumeration, can swallow an exception of a signal.
 _PAUSED = int(Flag.PAUSED)
-_AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD | Flag.TURNED)
 _TOLD_S = 1.0  # from one fault that is told of a trial to the next
 _SCAN_MM = 10.0  # between the lines that a simulated hand goes along over a picture
 
@@ -116,7 +115,7 @@ class SessionDevice(Presenter):
 
     @property
     def told(self) -> dict[str, Any]:
-        """What the event of a run says of it."""
+        """Description of it for the event of a run."""
         return {
             "display": asdict(self.display),
             "calibration": self.engine.calibration,
@@ -234,7 +233,7 @@ class SessionDevice(Presenter):
         if ticks.size:
             self.newest = ticks[-1]
             anywhere = self._under is not None and self._under.canvas_mm is not None
-            works = not int(ticks["flags"][-1]) & _AWAY
+            works = not int(ticks["flags"][-1]) & AWAY
             self._is_ready = works if anywhere else self.engine.ready
             if self._under is not None:
                 found += self._follow(ticks, self._under)

@@ -12,13 +12,11 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, Self
 
-import numpy as np
 from msgspec import structs
 
 from vbraille.braille.spelling import ordinal, say_cells
-from vbraille.devices.base import Placing
-from vbraille.engine.engine import placing_of
-from vbraille.engine.record import Flag, RingReader
+from vbraille.engine.engine import WHY
+from vbraille.engine.record import RingReader
 from vbraille.errors import InputError
 from vbraille.live.messages import LetGo, Point, ViewState
 from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
@@ -144,6 +142,8 @@ class SessionView:
         minutes, seconds = divmod(int(runner.elapsed_s), 60)
         facts.append(("answered", str(runner.progress.done)))
         facts.append(("time", f"{minutes} min {seconds:02} s"))
+        flags = 0 if newest is None else int(newest["flags"])
+        why = next((words for flag, words in WHY.items() if flags & flag), "the device is in use")
         state = ViewState(
             title=protocol.title,
             array=array_shown(device.display),
@@ -152,7 +152,7 @@ class SessionView:
             place=f"waits for {runner.waits_for}" if runner.waits_for else "",
             paused=runner.paused,
             simulated=device.engine.steered,
-            device="device: starts" if newest is None else f"device: {_state_of(newest)}",
+            device="device: starts" if newest is None else f"device: {why}",
             said=list(self._said),
             said_before=self._count - len(self._said),
             facts=facts,
@@ -190,15 +190,3 @@ def _unhidden(
         "rows_shown": rows_shown(style, device.display),
         "lines": lines,
     }
-
-
-def _state_of(newest: np.void) -> str:
-    """Return words for the state of the device at its newest tick."""
-    flags = int(newest["flags"])
-    if flags & int(Flag.SILENT):
-        return "silent"
-    if placing_of(newest) is not Placing.DONE:
-        return "its place is not known"
-    if flags & int(Flag.HELD):
-        return "at rest by itself"
-    return "turned too far" if flags & int(Flag.TURNED) else "in use"

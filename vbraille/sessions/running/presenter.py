@@ -1,4 +1,4 @@
-"""What stimuli are felt on. By itself this is paper, of which Enter says when it was read."""
+"""Paper, and the base of all that stimuli are felt on. Enter says when reading of paper ends."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Presenter:
 
     @property
     def told(self) -> dict[str, Any]:
-        """What the event of a run says of it."""
+        """Description of it for the event of a run."""
         return {}
 
     @property
