@@ -45,7 +45,8 @@ def write_scene(scene: Scene, comments: Comments | None = None) -> str:
         first element, ``("elements", 0, "parts", 2)`` for a part of it, and none for the whole
         file.
     """
-    return "\n".join(_lines("", _plain(scene), (), "", comments or {})).strip("\n") + "\n"
+    text = "\n".join(_lines("", _plain(scene), (), "", comments or {}))
+    return text.strip("\n").replace("\n\n\n", "\n\n") + "\n"
 
 
 def _plain(value: Any) -> Any:
