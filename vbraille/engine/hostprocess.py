@@ -233,16 +233,16 @@ def main() -> int:
     parent = Parent(int(sys.argv[1]))
     try:
         run(parent, int(sys.argv[2]))
-    except VbrailleError as error:
-        parent.say(fault=str(error)[:_MOST_SAID], code=error.exit_code)
-        return error.exit_code
     except Exception as error:
-        print_traceback(error)
-        what = f"{type(error).__name__}: {error}"[:_MOST_SAID]
-        parent.say(
-            fault=f"a fault of vbraille's own, which its authors want to hear of: {what}", code=1
-        )
-        return 1
+        said, code = str(error), 1
+        if isinstance(error, VbrailleError):
+            code = error.exit_code
+        else:
+            print_traceback(error)
+            what = f"{type(error).__name__}: {error}"
+            said = f"a fault of vbraille's own, which its authors want to hear of: {what}"
+        parent.say(fault=said[:_MOST_SAID], code=code)
+        return code
     return 0
 
 

@@ -192,16 +192,16 @@ class Loop(LoopState):
         """
         device = self.device
         LoopState.show(self, None)
-        self.hold()
+        left = self.output.copy()
         if device.calibration is not None:
             device.calibrate(None)
-        ticks = 0
+        share, step = 1.0, 1 / (FADE_S * self.rate_hz)
         self.restart_clock()
         while self.output.any() or device.moving:
             self._due_ns = max(self._due_ns + self._period_ns, self.clock.now_ns())
             self.clock.sleep_until_ns(self._due_ns)
-            ticks += 1
-            self.fade(min(ticks / (FADE_S * self.rate_hz), 1.0))
+            share = max(share - step, 0.0)
+            self.output[:] = share * left
             device.write(self.output)
 
 

@@ -24,7 +24,6 @@ from vbraille.engine.constants import (
 from vbraille.engine.record import FLOATS, INTS
 from vbraille.errors import check_range
 from vbraille.render import work
-from vbraille.render.frames import blend
 from vbraille.render.program import nothing
 
 if TYPE_CHECKING:
@@ -112,9 +111,9 @@ class LoopState:
         now["x_mm"] = now["y_mm"] = now["theta_rad"] = np.nan
         ints = state.view(np.int64)[: len(INTS)]
         floats = state.view(np.float64)[len(_WHOLE) : len(_WHOLE) + len(FLOATS)]
-        self.output, self._held, self._target = (np.zeros(display.shape) for _ in range(3))
         windows = np.zeros((DIFFERENCE, 3)), np.zeros((MEAN, 2))
-        frames = self.output, self._held, self._target
+        self.output, held, target = (np.zeros(display.shape) for _ in range(3))
+        frames = self.output, held, target
         self._known = state, ints, floats, *windows, *frames, np.zeros(work.AT)
         self._program = nothing(display)
         # The frame before, the time at which it was sent, and how far its fade had come.
@@ -199,12 +198,3 @@ class LoopState:
         """Forget the frame last made, which did not go out: the actuators are where they were."""
         np.copyto(self.output, self._before)
         self.now["sent_ns"], self.now["faded_ns"] = self._before_ns
-
-    def hold(self) -> None:
-        """Keep the frame last made, to fade from it."""
-        self._held[:] = self.output
-
-    def fade(self, share: float) -> None:
-        """Make a frame between the one that `hold` kept and rest."""
-        self._target.fill(0.0)
-        blend(self._held, self._target, share, self.output)

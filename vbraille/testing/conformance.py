@@ -58,7 +58,7 @@ def check_members(open_device: Open) -> None:
     with _opened(open_device) as device:
         assert isinstance(device.display, Display), "display must be a Display"
         assert device.display == device.display, "display must stay the same"
-        assert device.display.name.strip(), "a device has a name"
+        assert device.display.name, "a device has a name"
         for name in ("read", "write", "set_zero", "take_events", "counts"):
             assert callable(getattr(device, name)), f"{name} must be a method"
         for name, kinds in _VALUES.items():
