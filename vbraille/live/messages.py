@@ -29,16 +29,11 @@ class Next(Request, frozen=True, tag="next"):
 
     Parameters
     ----------
-    row, column
-        Actuator whose deflection the samples hold, from 0.
-    at_s, since_s
-        In a recording, time of the frame and of the frame before, in seconds from its start.
+    at_s
+        In a recording, time of the frame, in seconds from its start.
     """
 
-    row: int = 0
-    column: int = 0
     at_s: float | None = None
-    since_s: float | None = None
 
 
 class PagePress(Request, frozen=True, tag="press"):
@@ -175,7 +170,7 @@ class SceneShown(msgspec.Struct, frozen=True):
     left_mm, top_mm
         Place on the canvas where the carriage is at 0, 0.
     off, off_image
-        Layers that its switches hide, each with what hides it, and a map of these alone.
+        Layers that are off, each with the signal that hides it, and a map of these alone.
     """
 
     title: str

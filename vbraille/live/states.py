@@ -10,7 +10,7 @@ import numpy as np
 
 from vbraille.live.messages import ArrayShown, BesideShown, LineShown
 from vbraille.render.braille.mappings import NONE
-from vbraille.render.braille.models import swing_of
+from vbraille.render.braille.models import SWING_MM
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -35,7 +35,7 @@ def array_shown(display: Display) -> ArrayShown:
         columns=display.columns,
         column_pitch_mm=display.column_pitch_mm,
         row_pitch_mm=display.row_pitch_mm,
-        swing_mm=swing_of(display),
+        swing_mm=SWING_MM,
         rest_right=display.rest_side == "right",
         travel_mm=display.travel_mm,
         height_mm=display.height_mm,

@@ -29,13 +29,46 @@ if TYPE_CHECKING:
     from vbraille.recording import Print, Recording
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
+    from vbraille.translate import BrailleTable
 
 _MOST_FRAMES = 10_000_000
 MOST_LINES = 1000  # of a page
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class RenderedLine:
+class _Rendered:
+    """A text on a display, in a style."""
+
+    display: Display
+    style: BrailleStyle
+
+    def _recording(
+        self,
+        lines: Sequence[Line],
+        first: int,
+        rate_hz: float,
+        frames: NDArray[np.floating],
+        path: tuple[NDArray[np.float64], ...],
+        part: NDArray[np.int64],
+    ) -> Recording:
+        from vbraille.recording import Recording  # loads h5py
+
+        display = replace(self.display, rate_hz=check_rate(rate_hz))
+        return Recording(
+            np.arange(len(frames)) / rate_hz,
+            *path,
+            frames.astype(np.float32),
+            replace(model_of(display), display=display, style=self.style),
+            [line.masks for line in lines],
+            part.clip(0, len(lines) - 1),
+            part,
+            first_line=first,
+            prints=[print_of(line) for line in lines],
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RenderedLine(_Rendered):
     """A line of text with every frame along it.
 
     Parameters
@@ -53,8 +86,6 @@ class RenderedLine:
     """
 
     line: Line
-    display: Display
-    style: BrailleStyle
     positions_mm: NDArray[np.float64]
     frames: NDArray[np.float64]
     number: int = 1
@@ -93,18 +124,11 @@ class RenderedLine:
         if not 0 < speed_mm_s < math.inf:
             raise InputError(f"speed_mm_s is {speed_mm_s:g}; it must be above 0")
         step_mm = float(self.positions_mm[1] - self.positions_mm[0])
-        lines = np.zeros(len(self), np.int64)
         middle_mm = np.full(len(self), self.style.geometry.line_pitch_mm / 2)
-        return _recorded(
-            self.display,
-            self.style,
-            speed_mm_s / step_mm,
-            [self.line],
-            self.number,
-            self.frames,
-            (self.positions_mm, middle_mm, 0.0 * middle_mm),
-            lines,
-        )
+        path = self.positions_mm, middle_mm, 0.0 * middle_mm
+        part = np.zeros(len(self), np.int64)
+        rate_hz = speed_mm_s / step_mm
+        return self._recording([self.line], self.number, rate_hz, self.frames, path, part)
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the deflections over the places of the array, an actuator a row.
@@ -129,7 +153,7 @@ class RenderedLine:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class RenderedPage:
+class RenderedPage(_Rendered):
     """Lines of a text, one below the other, which give the frame of any pose over them.
 
     Parameters
@@ -145,8 +169,6 @@ class RenderedPage:
     """
 
     lines: tuple[Line, ...]
-    display: Display
-    style: BrailleStyle
     program: Program
     first: int = 1
 
@@ -204,9 +226,8 @@ class RenderedPage:
         """
         path = _path(x_mm, y_mm, theta_rad)
         part, frames = self.program.poses(*path)
-        line = part.clip(0, len(self.lines) - 1)
-        how = self.display, self.style, rate_hz
-        return _recorded(*how, self.lines, self.first, frames, path, line, part)
+        part = part.astype(np.int64)
+        return self._recording(self.lines, self.first, rate_hz, frames, path, part)
 
 
 def render_text(
@@ -254,7 +275,7 @@ def render_text(
     >>> float(made.frames.max())
     1.0
     """
-    model, style, layout = _laid_out(text, display, style, language, grade, table)
+    model, layout = _laid_out(text, display, style, choose_table(language, grade, table))
     if line is None and layout.line(2) is not None:
         raise InputError(
             f"the text takes {count(layout.count(), 'line')} on the {model.title}; say which with "
@@ -266,18 +287,18 @@ def render_text(
     if found is None:
         raise InputError(f"the text ends at line {layout.count()}; line {line} is past that")
     half_mm = model.display.span_mm / 2
-    way_mm = style.geometry.extent_mm(len(found)) + 2 * half_mm
+    way_mm = model.style.geometry.extent_mm(len(found)) + 2 * half_mm
     if not way_mm / _MOST_FRAMES <= step_mm <= way_mm:
         raise InputError(
             f"step_mm is {step_mm:g}; it must be {way_mm / _MOST_FRAMES:.2g} to {way_mm:.3g} mm"
         )
     positions_mm = np.arange(0.0, way_mm + step_mm / 2, step_mm) - half_mm
     try:
-        program = style.render(found.masks, model.display)
+        program = model.style.render(found.masks, model.display)
     except ValueError as error:
         raise InputError(str(error)) from None
     frames = program.path(positions_mm).astype(np.float64)
-    return RenderedLine(found, model.display, style, positions_mm, frames, line or 1)
+    return RenderedLine(model.display, model.style, found, positions_mm, frames, line or 1)
 
 
 def render_page(
@@ -313,7 +334,7 @@ def render_page(
     >>> [line.text for line in page.lines], page.frames([10.0, 20.0], [5.5, 16.5]).shape
     (['one', 'two'], (2, 8, 8))
     """
-    model, style, layout = _laid_out(text, display, style, language, grade, table)
+    model, layout = _laid_out(text, display, style, choose_table(language, grade, table))
     check_lines(first, last)
     lines = tuple(islice(layout.lines(first, last), MOST_LINES + 1))
     if not lines or (last is not None and len(lines) <= last - first):
@@ -321,10 +342,10 @@ def render_page(
     if len(lines) > MOST_LINES:
         raise InputError(f"a page has at most {MOST_LINES} lines; say which with first and last")
     try:
-        program = style.render_page([line.masks for line in lines], model.display)
+        program = model.style.render_page([line.masks for line in lines], model.display)
     except ValueError as error:
         raise InputError(str(error)) from None
-    return RenderedPage(lines, model.display, style, program, first)
+    return RenderedPage(model.display, model.style, lines, program, first)
 
 
 def check_lines(first: int, last: int | None) -> None:
@@ -346,33 +367,6 @@ def _path(
     return x, y, theta
 
 
-def _recorded(
-    display: Display,
-    style: BrailleStyle,
-    rate_hz: float,
-    lines: Sequence[Line],
-    first: int,
-    frames: NDArray[np.floating],
-    path: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
-    line: NDArray[np.int64],
-    part: NDArray[np.int64] | None = None,
-) -> Recording:
-    from vbraille.recording import Recording  # loads h5py
-
-    display = replace(display, rate_hz=check_rate(rate_hz))
-    return Recording(
-        np.arange(len(frames)) / rate_hz,
-        *path,
-        frames.astype(np.float32),
-        replace(model_of(display), display=display, style=style),
-        [each.masks for each in lines],
-        line.astype(np.int64),
-        np.zeros(len(frames), np.int64) if part is None else part.astype(np.int64),
-        first_line=first,
-        prints=[print_of(each) for each in lines],
-    )
-
-
 def print_of(line: Line) -> Print:
     """Print of a line, as pages of the live view show it under the braille."""
     from vbraille.recording import Print  # loads h5py
@@ -382,19 +376,19 @@ def print_of(line: Line) -> Print:
 
 
 def _laid_out(
-    text: str,
-    display: Model | Display,
-    style: BrailleStyle | None,
-    language: str | None,
-    grade: int | None,
-    table: str | None,
-) -> tuple[Model, BrailleStyle, Layout]:
-    """Lay a text out in the lines of a display; without a style, as the display is usually read."""
+    text: str, display: Model | Display, style: BrailleStyle | None, table: BrailleTable
+) -> tuple[Model, Layout]:
+    """Lay a text out in the lines of a display."""
+    model = read_as(display, style)
+    width = cells_per_line(model.style.geometry, model.display)
+    return model, lay_out_text(text, width, table, keep_lines=True)
+
+
+def read_as(display: Model | Display, style: BrailleStyle | None) -> Model:
+    """Model of a display; without a style, as it is usually read, on all of its way."""
     check_shown(display, style)
     model = display if isinstance(display, Model) else model_of(display)
     if style is None:
         geometry = replace(model.style.geometry, travel_mm=model.display.travel_mm)
         style = model.style.replace(geometry=geometry)
-    width = cells_per_line(style.geometry, model.display)
-    chosen = choose_table(language, grade, table)
-    return model, style, lay_out_text(text, width, chosen, keep_lines=True)
+    return replace(model, style=style)

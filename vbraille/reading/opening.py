@@ -12,11 +12,11 @@ from vbraille.display import Display, check_rate
 from vbraille.errors import DeviceError, InputError
 from vbraille.layout import Layout, cells_per_line
 from vbraille.reading.device import HAND, POLL_S, ReadingDevice
-from vbraille.reading.frames import check_lines
+from vbraille.reading.frames import check_lines, read_as
 from vbraille.reading.outputs import Cue, Output
 from vbraille.reading.places import Places
 from vbraille.reading.reader import Reader
-from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
+from vbraille.render.braille.models import STRESS2, Model, check_shown
 from vbraille.simulation.specs import refuse_hand
 from vbraille.translate import Book, choose_table, text_source
 
@@ -277,9 +277,7 @@ def _model_for(
     """Model that a device which was found is read as."""
     if display is not None:
         check_actuators(found, display.display if isinstance(display, Model) else display)
-    model = replace(display, display=found) if isinstance(display, Model) else model_of(found)
     if style is not None:
         check_travel(found, style.geometry.travel_mm)
-        return replace(model, style=style)
-    geometry = replace(model.style.geometry, travel_mm=found.travel_mm)
-    return replace(model, style=model.style.replace(geometry=geometry))
+    shown = replace(display, display=found) if isinstance(display, Model) else found
+    return read_as(shown, style)

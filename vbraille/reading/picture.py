@@ -27,11 +27,10 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.pictures.index import NamedElement, Spot
+    from vbraille.pictures.index import Spot
     from vbraille.pictures.loading import LoadedScene
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.outputs import Output
-    from vbraille.render.program import Program
     from vbraille.scene.scene import Canvas
 
 Point = tuple[float, float]
@@ -44,6 +43,7 @@ _PAN = 0.5  # of what is within reach
 _CONTRAST_STEP = 0.1
 SAID = ("not said", "said", "said, with sounds")  # elements as the finger comes to them
 _NOWHERE = math.nan, math.nan
+_PICTURE = "picture"  # a goal that is reached where anything of it is felt
 _command = partial(command, where=Where.PICTURE | Where.FIGURE)
 
 
@@ -117,7 +117,7 @@ class Picture(Explored):
         zoom: float = 1.0,
     ) -> None:
         super().__init__(device, outputs, key_set)
-        self.where, self.loaded, self._contrast = where, loaded, 1.0
+        self.where, self._contrast = where, 1.0
         self._sound, self._saying = sound, saying
         self._attended, self._goes = attended, goes and device.steered
         self._watch = FileWatch(Path(loaded.opened.path)) if where is Where.PICTURE else None
@@ -125,7 +125,6 @@ class Picture(Explored):
         self.spot: Spot | None = None
         self._goal: tuple[str, Point] | None = None  # that the hand is on its way to
         self._said_s = -math.inf
-        self._outside = False  # whether it is to be seen if a person's finger is on the picture
         self._aim: Point | None = None  # where keys have sent the hand
         self._looked_at = _NOWHERE
         self._states: dict[int, int] = {}  # of the picture's switches, by their keys
@@ -133,7 +132,7 @@ class Picture(Explored):
         self._number = 0
         self._chosen = y_mm is not None
         self._y_mm = zoom * (loaded.scene.canvas.height_mm / 2 if y_mm is None else y_mm)
-        self._take(*self._made(loaded, zoom))
+        self._take(loaded, zoom)
 
     def begin(self) -> None:
         """Show the picture where something of it is felt, and say what it is."""
@@ -173,24 +172,17 @@ class Picture(Explored):
             self.device.give(sweep(self.loaded.scene.canvas))
         elif self.device.steered:
             self._glide(self.index.inside(), _LED_MM_S)
-        else:
-            self._outside = self.flat or not self._chosen
+        elif self.flat or not self._chosen:
+            self._goal = _PICTURE, self.index.inside()
 
     # What is shown
 
-    def _made(self, loaded: LoadedScene, zoom: float) -> tuple[LoadedScene, Program]:
-        """Picture at a zoom, with its program."""
-        shown = loaded.zoomed(zoom)
-        display = self.display
-        program = compose(shown, display, rate_hz=display.rate_hz, contrast=self._contrast)
-        return shown, program
-
-    def _take(self, shown: LoadedScene, program: Program) -> None:
-        before = self.index.elements[self._element].name if self._element >= 0 else ""
-        self.shown, self._program = shown, program
+    def _take(self, loaded: LoadedScene, zoom: float) -> None:
+        """Have a picture at a zoom; if it cannot be shown so, all stays as it was."""
+        shown, display = loaded.zoomed(zoom), self.display
+        self._program = compose(shown, display, rate_hz=display.rate_hz, contrast=self._contrast)
+        self.loaded, self.shown = loaded, shown
         self.index = SceneIndex(shown.scene, shown.assets, shown.boxes())
-        names = [element.name for element in self.index.elements]
-        self._element = names.index(before) if before in names else -1
         self.spot = self._aim = None
         self._switch()
 
@@ -230,7 +222,7 @@ class Picture(Explored):
 
     def _zoom_to(self, zoom: float) -> None:
         try:
-            made = self._made(self.loaded, zoom)
+            self._take(self.loaded, zoom)
         except InputError as error:
             self.say(f"zoom: still {self.aperture.zoom:g}; {error}", Cue.NOT_FOUND)
             return
@@ -238,7 +230,6 @@ class Picture(Explored):
         at_mm = (0.0, 0.0) if pose is None else (pose.x_mm, pose.y_mm)
         self._y_mm *= zoom / self.aperture.zoom
         self._goal = None
-        self._take(*made)
         whole = Aperture(self.aperture.reach_mm)
         self._look_from(whole if zoom == 1.0 else self.aperture.zoomed(zoom, at_mm))
 
@@ -251,17 +242,13 @@ class Picture(Explored):
         place = self.place
         if place is None:
             return
-        if self._outside:  # unless the finger is on the picture by chance
-            self._outside = False
-            if self.index.where(*place) is None:
-                self._goal = "picture", self.index.inside()
-        if self._goal is not None:
-            self._say_way(place, now_s, *self._goal)
         if not math.dist(place, self._looked_at) < _MOVED_MM:
             self._looked_at = place
             before, self.spot = self.spot, self.index.where(*place)
             if self._saying and self.spot != before:
                 self._say_coming(place, before)
+        if self._goal is not None:
+            self._say_way(place, now_s, *self._goal)
 
     def follow(self, ticks: NDArray[np.void]) -> None:  # noqa: ARG002 - the place is known
         """Note that another person holds the hand, and that a hand has gone over all."""
@@ -272,7 +259,7 @@ class Picture(Explored):
 
     def _say_way(self, place: Point, now_s: float, name: str, to: Point) -> None:
         to = to if self.flat else (to[0], place[1])
-        if math.dist(place, to) <= _THERE_MM:
+        if math.dist(place, to) <= _THERE_MM or (name == _PICTURE and self.spot is not None):
             self._goal = None
             self.say(f"there: {name}")
         elif not self.device.steered and now_s - self._said_s >= _WAY_EVERY_S:
@@ -366,18 +353,16 @@ class Picture(Explored):
         """Say more of what is under the finger."""
         place = self.place
         spot = None if place is None else self.index.where(*place)
-        if spot is not None:
-            element = spot.element
-            self.say(f"{element.name}: {element.description or self._looks(element)}")
-        else:
+        if spot is None:
             self.say(f"nothing here{'' if place is None else self._nearest(place)}")
-
-    def _looks(self, element: NamedElement) -> str:
-        """Words for an element that says nothing of itself: its kind, its size, its textures."""
-        kinds = [kind_of(one).replace("-", " ") for one in each(element.pattern)]
-        inner = dict.fromkeys(kind for kind in kinds[1:] if kind != "use")
+            return
+        element = spot.element
+        kind, *inner = dict.fromkeys(
+            kind_of(one).replace("-", " ") for one in each(element.pattern)
+        )
         parts = f" with {', '.join(inner)}" if inner else ""
-        return f"{kinds[0]}, {self.aperture.sized(element.box)}{parts}"
+        looks = f"{kind}, {self.aperture.sized(element.box)}{parts}"
+        self.say(f"{element.name}: {element.description or looks}")
 
     @_command("say what the picture is", "V f5")
     def say_picture(self) -> None:
@@ -406,8 +391,7 @@ class Picture(Explored):
     )
     def entering(self) -> None:
         """Say elements as the finger comes to them, with sounds if there are any, or not."""
-        sounds = any(element.pattern.sound for element in self.index.elements)
-        states = 3 if sounds and self._sound is not None else 2
+        states = 2 if self._sound is None else 3
         self._saying = (self._saying + 1) % states
         self.say(f"elements: {SAID[self._saying]} as you come to them")
 
@@ -437,7 +421,7 @@ class Picture(Explored):
     def element(self, step: int) -> None:
         """Go to the next element, or to the one before."""
         count = len(self.index.elements)
-        number = count - 1 if self._element < 0 and step < 0 else self._element + step
+        number = count - 1 if self._element < 0 and step < 0 else min(self._element, count) + step
         if 0 <= number < count:
             self._go_to(number)
         else:
@@ -520,7 +504,7 @@ class Picture(Explored):
             self.refuse_beyond(f"contrast: {contrast:g}", up=by > 0)
             return
         self._contrast = contrast
-        self._take(*self._made(self.loaded, self.aperture.zoom))
+        self._take(self.loaded, self.aperture.zoom)
         self._show()
         self.say(f"contrast: {contrast:g}")
 
@@ -530,12 +514,12 @@ class Picture(Explored):
         try:
             loaded = load_scene(self.loaded.opened.path, self.device.model.style)
             check_fits(loaded.scene, self.display)
-            made = self._made(loaded, self.aperture.zoom)
+            self._take(loaded, self.aperture.zoom)
         except InputError as error:
             self.say(f"not reloaded: {error}; the picture is as it was", Cue.NOT_FOUND)
             return
-        self.loaded, self._states = loaded, {}
-        self._take(*made)
+        self._states = {}
+        self._switch()
         self._show()
         self.say(f"reloaded: {loaded.title}")
         for note in loaded.notes:

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
 # Difference that is allowed between the pitches of an array and of a model, as a share.
 PITCH_TOLERANCE = 0.01
-# A simulated device has 10 bits, and 5 µm a count: at full texture that is 4 % of the swing.
-_LEVELS, _COUNTS_PER_MM, _RATE_HZ = 1024, 200.0, 1000.0
 # Number of rows in a mapping that shows all dot rows of a cell one actuator row apart.
 _LEAST_ROWS = 3
 # Way of a contactor from rest to full deflection. The source says that the actuators of its later
@@ -42,17 +40,14 @@ class Model:
         Display that it is.
     style
         Style in which braille is shown on the display.
-    swing_mm
-        Way of a contactor from rest to full deflection, in mm.
     """
 
     name: str
     title: str
     display: Display
     style: BrailleStyle
-    swing_mm: float = SWING_MM
 
-    def on(self, geometry: Geometry, rate_hz: float = _RATE_HZ) -> Display:
+    def on(self, geometry: Geometry, rate_hz: float = 1000.0) -> Display:
         """Make the display with the travel of a geometry, at a rate in Hz."""
         return replace(self.display, travel_mm=geometry.travel_mm, rate_hz=rate_hz)
 
@@ -67,11 +62,7 @@ VBD = Model(
         columns=12,
         column_pitch_mm=0.7,
         row_pitch_mm=0.7,
-        levels=_LEVELS,
         rest_side="left",
-        travel_mm=geometry.VBD.travel_mm,
-        counts_per_mm=_COUNTS_PER_MM,
-        rate_hz=_RATE_HZ,
     ),
     BrailleStyle(Profile.HALF_SINE, single_row(1), geometry.VBD, Tuning(texture=0.0)),
 )
@@ -85,11 +76,6 @@ STRESS2 = Model(
         columns=10,
         column_pitch_mm=1.2,
         row_pitch_mm=1.8,
-        levels=_LEVELS,
-        rest_side="right",
-        travel_mm=geometry.STRESS2.travel_mm,
-        counts_per_mm=_COUNTS_PER_MM,
-        rate_hz=_RATE_HZ,
     ),
     BrailleStyle(
         Profile.RAISED_COSINE, MAPPINGS["alternate"], geometry.STRESS2, Tuning(texture=1.0)
@@ -104,9 +90,6 @@ _ARRAY_8X8 = Display(
     columns=8,
     column_pitch_mm=1.2,
     row_pitch_mm=1.4,
-    levels=_LEVELS,
-    rest_side="right",
-    rate_hz=_RATE_HZ,
     contactor_mm=(0.5, 1.2),
 )
 STRESS2_8X8 = Model(
@@ -160,11 +143,6 @@ def model_of(display: Display) -> Model:
     else:
         style = VBD.style
     return Model("", display.name, display, style)
-
-
-def swing_of(display: Display) -> float:
-    """Way of a contactor of a display from rest to full deflection, in mm, as far as is known."""
-    return model_of(display).swing_mm
 
 
 def check_shown(display: object, style: object = None) -> None:
