@@ -100,9 +100,7 @@ _END_S: Final = 2.0  # and to bring blades to rest, or after a client that was k
 # Notices, each by its code.
 POWER_OFF, PLACE, ENCODERS = 1, 2, 3
 UNPOWERED: Final = "its motor power is off; switch it on, and reading goes on"
-NO_SWITCH: Final = (
-    "how its motor power is switched is not known, so that it stays on; give power=ADDRESS"
-)
+NO_SWITCH: Final = "how to switch its motor power is unknown, and it stays on; give power=ADDRESS"
 WHERE: Final = (
     "the near left corner of a Latero is the lower left one, with its third arm straight up: from "
     "the array it goes straight away from you"
@@ -451,7 +449,7 @@ class LateroDevice(Device):
             f"{status >> 8 & 0xF}.{status >> 4 & 0xF}"
             for status in (self.answer.controller, self.answer.interface)
         )
-        where = "its offsets are not known before it is shown its lower left corner"
+        where = "its offsets are unknown until it is shown its lower left corner"
         if self._offsets is not None:
             where = f"offsets={','.join(map(str, self._offsets))}"
         return Particulars(
