@@ -170,7 +170,7 @@ class SceneShown(msgspec.Struct, frozen=True):
     left_mm, top_mm
         Place on the canvas where the carriage is at 0, 0.
     off, off_image
-        Layers that its switches hide, each with what hides it, and a map of these alone.
+        Layers that are off, each with the signal that hides it, and a map of these alone.
     """
 
     title: str

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,8 +17,8 @@ from PIL.PngImagePlugin import PngInfo
 
 from vbraille.errors import InputError
 from vbraille.pictures.words import plain
-from vbraille.scene.patterns import Group, Moving
-from vbraille.scene.signals import Pulse, Switch, made_of, ordered
+from vbraille.scene.patterns import Moving
+from vbraille.scene.signals import Pulse, Switch, ordered
 from vbraille.scene.textures import SignalLevel
 from vbraille.scene.traversal import each, vibrations, waves_of
 from vbraille.wording import setting
@@ -32,7 +31,6 @@ if TYPE_CHECKING:
     from vbraille.render.labels import Assets
     from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Canvas, Scene
-    from vbraille.scene.signals import AnySignal
 
 PIXELS_PER_MM = 4.0
 # Pixels of a map that each kind of file is made of within 300 MB; A3 has 12 million at 10 a mm.
@@ -200,25 +198,8 @@ def grays(deflections: NDArray[np.floating]) -> NDArray[np.uint8]:
     return levels
 
 
-@dataclass(frozen=True, slots=True)
-class HiddenLayers:
-    """Layers of a scene that its switches hide.
-
-    Parameters
-    ----------
-    elements
-        Each element that is hidden in whole, or of which a part is, with whether it is in whole,
-        and the signal that does so.
-    shown
-        The scene with these layers, too, as its switches and a hand at rest have it else.
-    """
-
-    elements: tuple[tuple[AnyPattern, bool, str], ...]
-    shown: Scene
-
-
-def hidden_layers(scene: Scene, switches: int) -> HiddenLayers | None:
-    """Find the layers that switches of a scene hide, and show them; None where there are none.
+def hidden_layers(scene: Scene, switches: int) -> tuple[list[tuple[AnyPattern, str]], Scene]:
+    """Find the layers of a scene that are off under a hand at rest.
 
     Parameters
     ----------
@@ -226,46 +207,27 @@ def hidden_layers(scene: Scene, switches: int) -> HiddenLayers | None:
         A resolved scene.
     switches
         States of its switches, as `vbraille.scene.signals.packed` has them.
+
+    Returns
+    -------
+    list[tuple[AnyPattern, str]], Scene
+        The elements of which something is off, each with the signal that is 0 there; and the scene
+        with these signals at 1, as its switches and a hand at rest have it else.
     """
     from vbraille.render.compiling import SceneMap, settled  # loads the kernels
 
-    if not scene.signals:
-        return None
-    values = SceneMap(scene).signal_values(0.0, (0.0, 0.0), switches)
-    names = [one.name for one in ordered(scene.signals)]
-    steady = {
-        name: float(value)
-        for name, value in zip(names, values.tolist(), strict=False)
-        if _is_switched(scene.signals, name)
-    }
-    found: list[tuple[AnyPattern, bool, str]] = []
-    turned: dict[str, float] = {}
+    shown = settled(scene, switches=switches)
+    values = SceneMap(shown).signal_values(0.0, (0.0, 0.0), 0).tolist()
+    names = [one.name for one in ordered(shown.signals)]
+    zero = {name for name, value in zip(names, values, strict=False) if value == 0.0}
+    found: dict[AnyPattern, str] = {}
     for element in scene.elements:
         for part in each(element):
-            factor = steady.get(part.factor, 1.0)
-            by = part.by if isinstance(part, Group) else None
-            share = steady.get(by.name, 0.5) if isinstance(by, SignalLevel) else 0.5
-            name = ""
-            if factor == 0.0:
-                name, turned[part.factor] = part.factor, 1.0
-            elif isinstance(by, SignalLevel) and share in (0.0, 1.0):
-                name, turned[by.name] = by.name, 1.0 - share
-            if name:
-                found.append((element, part is element and factor == 0.0, name))
-                break
-    if not found:
-        return None
-    held = {name: Switch(levels=(level, level)) for name, level in turned.items()}
-    shown = settled(scene, switches=switches)
-    return HiddenLayers(tuple(found), replace(shown, signals={**shown.signals, **held}))
-
-
-def _is_switched(signals: Mapping[str, AnySignal], name: str) -> bool:
-    """Tell whether only switches change a signal."""
-    of = made_of(signals[name])
-    if not of:
-        return isinstance(signals[name], Switch)
-    return all(_is_switched(signals, one) for one in of)
+            name = part.name if isinstance(part, SignalLevel) else part.factor
+            if name in zero:
+                found.setdefault(element, name)
+    every = {**shown.signals, **dict.fromkeys(found.values(), Switch(levels=(1.0, 1.0)))}
+    return list(found.items()), replace(shown, signals=every)
 
 
 def small_png(scene: Scene, assets: Assets, beyond: Scene | None = None) -> bytes:

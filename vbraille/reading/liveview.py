@@ -262,7 +262,7 @@ def _blank(loaded: LoadedScene, image: str) -> SceneShown:
 
 
 def _drawn(loaded: LoadedScene, switches: int) -> SceneShown:
-    """Draw a scene as its switches have it, and the layers that they hide."""
+    """Draw a scene as its switches have it, and the layers that are off."""
     from vbraille.pictures.index import label_of
     from vbraille.pictures.scenes import hidden_layers, small_png
     from vbraille.render.compiling import settled
@@ -273,11 +273,13 @@ def _drawn(loaded: LoadedScene, switches: int) -> SceneShown:
 
     scene = loaded.scene
     shown = settled(scene, switches=switches) if scene.signals else scene
-    picture, hidden = _blank(loaded, address(shown)), hidden_layers(scene, switches)
-    if hidden is None:
+    picture = _blank(loaded, address(shown))
+    if not scene.signals:
         return picture
+    hidden, every = hidden_layers(scene, switches)
     off = [
-        f"{'' if whole else 'part of '}{label_of(element) or 'a layer'} (signal {name})"
-        for element, whole, name in hidden.elements
+        f"{'' if element.factor == name else 'part of '}{label_of(element) or 'a layer'} "
+        f"(signal {name})"
+        for element, name in hidden
     ]
-    return replace(picture, off=off, off_image=address(hidden.shown, shown))
+    return replace(picture, off=off, off_image=address(every, shown)) if off else picture
