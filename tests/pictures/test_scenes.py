@@ -6,14 +6,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from vbraille.pictures.scenes import hidden_layers, small_png
-from vbraille.render.compiling import settled
+from vbraille.pictures.scenes import small_png
 from vbraille.render.labels import Assets
-from vbraille.scene.patterns import Circle, Fill, Group, Polygon
+from vbraille.scene.patterns import Circle, Fill, Group
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.signals import Inverse, Speed, Switch, packed
-from vbraille.scene.strokes import Stroke
-from vbraille.scene.textures import LinearGrating, RadialGrating, SignalLevel, Uniform
+from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform
 
 
 def drawn(canvas, *elements):
@@ -36,48 +33,3 @@ def test_a_map_that_says_little_in_many_bytes_is_coarser(side_mm):
     fine = Group(operation="blend", parts=waves[:2], by=LinearGrating(ridge_mm=2.3))
     pixels = drawn(Canvas(width_mm=side_mm, height_mm=side_mm), Group(parts=(*waves, fine)))
     assert max(pixels.shape) < 0.9 * 300_000**0.5
-
-
-CANVAS = Canvas(width_mm=40, height_mm=20)
-SIGNALS = {"view": Switch(levels=(1.0, 0.0)), "other": Inverse(of="view"), "slow": Speed()}
-RING = Circle(center_mm=(30, 10), radius_mm=5, title="Ring", factor="view", stroke=Stroke())
-FIELD = Polygon(
-    vertices_mm=((1, 1), (19, 1), (19, 19), (1, 19)),
-    title="Field",
-    fill=Fill(texture=Uniform(level=0.5, factor="other")),
-)
-BLEND = Group(
-    operation="blend",
-    parts=(Uniform(level=0.9), Uniform(level=0.4)),
-    by=SignalLevel(name="view"),
-)
-
-
-@pytest.mark.parametrize(
-    ("elements", "state", "told", "ring", "field"),
-    [
-        ((RING, FIELD), 0, [("Field", False, "other")], 0, 0.5),
-        ((RING, FIELD), 1, [("Ring", True, "view")], 1, 0),
-        ((BLEND,), 0, [("", False, "view")], 0.5, 0.5),  # which weighs the second
-        ((BLEND,), 1, [("", False, "view")], 0, 0),
-        ((Uniform(factor="slow"),), 1, None, 0, 0),  # a hand hides it, and no switch
-    ],
-)
-def test_layers_that_switches_hide_are_told_and_drawn_beyond_what_is_there(
-    elements, state, told, ring, field
-):
-    scene = Scene(canvas=CANVAS, elements=elements, signals=SIGNALS)
-    switches = packed({1: state}, SIGNALS)
-    hidden = hidden_layers(scene, switches)
-    if told is None:
-        assert hidden is None
-        return
-    assert [(one.title, whole, name) for one, whole, name in hidden.elements] == told
-    content = small_png(hidden.shown, Assets(), settled(scene, switches=switches))
-    with Image.open(io.BytesIO(content)) as image:
-        off = 1 - np.asarray(image)[[20, 40], [120, 40]] / 255  # the ring's top, and the field
-    assert off == pytest.approx([ring, field], abs=0.01)
-
-
-def test_a_scene_without_signals_hides_nothing():
-    assert hidden_layers(Scene(canvas=CANVAS, elements=(Uniform(),)), 0) is None

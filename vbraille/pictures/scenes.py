@@ -8,19 +8,16 @@ from __future__ import annotations
 
 import io
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec.structs import replace
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from vbraille.errors import InputError
 from vbraille.pictures.words import plain
-from vbraille.scene.patterns import Group, Moving
-from vbraille.scene.signals import Pulse, Switch, made_of, ordered
-from vbraille.scene.textures import SignalLevel
+from vbraille.scene.patterns import Moving
+from vbraille.scene.signals import Pulse
 from vbraille.scene.traversal import each, vibrations, waves_of
 from vbraille.wording import setting
 
@@ -30,9 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.render.labels import Assets
-    from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Canvas, Scene
-    from vbraille.scene.signals import AnySignal
 
 PIXELS_PER_MM = 4.0
 # Pixels of a map that each kind of file is made of within 300 MB; A3 has 12 million at 10 a mm.
@@ -200,75 +195,7 @@ def grays(deflections: NDArray[np.floating]) -> NDArray[np.uint8]:
     return levels
 
 
-@dataclass(frozen=True, slots=True)
-class HiddenLayers:
-    """Layers of a scene that its switches hide.
-
-    Parameters
-    ----------
-    elements
-        Each element that is hidden in whole, or of which a part is, with whether it is in whole,
-        and the signal that does so.
-    shown
-        The scene with these layers, too, as its switches and a hand at rest have it else.
-    """
-
-    elements: tuple[tuple[AnyPattern, bool, str], ...]
-    shown: Scene
-
-
-def hidden_layers(scene: Scene, switches: int) -> HiddenLayers | None:
-    """Find the layers that switches of a scene hide, and show them; None where there are none.
-
-    Parameters
-    ----------
-    scene
-        A resolved scene.
-    switches
-        States of its switches, as `vbraille.scene.signals.packed` has them.
-    """
-    from vbraille.render.compiling import SceneMap, settled  # loads the kernels
-
-    if not scene.signals:
-        return None
-    values = SceneMap(scene).signal_values(0.0, (0.0, 0.0), switches)
-    names = [one.name for one in ordered(scene.signals)]
-    steady = {
-        name: float(value)
-        for name, value in zip(names, values.tolist(), strict=False)
-        if _is_switched(scene.signals, name)
-    }
-    found: list[tuple[AnyPattern, bool, str]] = []
-    turned: dict[str, float] = {}
-    for element in scene.elements:
-        for part in each(element):
-            factor = steady.get(part.factor, 1.0)
-            by = part.by if isinstance(part, Group) else None
-            share = steady.get(by.name, 0.5) if isinstance(by, SignalLevel) else 0.5
-            name = ""
-            if factor == 0.0:
-                name, turned[part.factor] = part.factor, 1.0
-            elif isinstance(by, SignalLevel) and share in (0.0, 1.0):
-                name, turned[by.name] = by.name, 1.0 - share
-            if name:
-                found.append((element, part is element and factor == 0.0, name))
-                break
-    if not found:
-        return None
-    held = {name: Switch(levels=(level, level)) for name, level in turned.items()}
-    shown = settled(scene, switches=switches)
-    return HiddenLayers(tuple(found), replace(shown, signals={**shown.signals, **held}))
-
-
-def _is_switched(signals: Mapping[str, AnySignal], name: str) -> bool:
-    """Tell whether only switches change a signal."""
-    of = made_of(signals[name])
-    if not of:
-        return isinstance(signals[name], Switch)
-    return all(_is_switched(signals, one) for one in of)
-
-
-def small_png(scene: Scene, assets: Assets, beyond: Scene | None = None) -> bytes:
+def small_png(scene: Scene, assets: Assets) -> bytes:
     """Make the deflection map of a scene as a PNG of 120 kB at most, for pages and recordings.
 
     What vibrates is as it is at the beginning, since noise would make the file larger.
@@ -277,17 +204,12 @@ def small_png(scene: Scene, assets: Assets, beyond: Scene | None = None) -> byte
     ----------
     scene, assets
         A resolved scene, and what it takes from image files and labels.
-    beyond
-        Scene of the same canvas beyond whose deflections alone the others are drawn; None for all.
     """
     canvas = scene.canvas
     area_mm2 = canvas.width_mm * canvas.height_mm
     per_mm = min(PIXELS_PER_MM, math.sqrt(_SMALL_PIXELS / area_mm2))
     while True:
         drawn = map_deflections(scene, assets, per_mm, noise_seed=None)
-        if beyond is not None:
-            drawn -= map_deflections(beyond, assets, per_mm, noise_seed=None)
-            np.maximum(drawn, 0.0, out=drawn)
         content = png(grays(drawn), per_mm)
         if len(content) <= _SMALL_BYTES:
             return content

@@ -147,7 +147,7 @@ class LiveOutput(Output):
         if reader.beside_mapping is not None:
             other = style.replace(mapping=reader.beside_mapping)
             words = mapping_said(other.mapping)
-            beside = beside_shown(other, self._device.display, reader.part.masks, 0.0, words)
+            beside = beside_shown(other, self._device.display, reader.part.masks, words)
         return {
             "title": source.title or Path(source.name).name,
             "geometry": geometry_shown(geometry),
@@ -262,22 +262,11 @@ def _blank(loaded: LoadedScene, image: str) -> SceneShown:
 
 
 def _drawn(loaded: LoadedScene, switches: int) -> SceneShown:
-    """Draw a scene as its switches have it, and the layers that they hide."""
-    from vbraille.pictures.index import label_of
-    from vbraille.pictures.scenes import hidden_layers, small_png
+    """Draw a scene as its switches have it."""
+    from vbraille.pictures.scenes import small_png
     from vbraille.render.compiling import settled
-
-    def address(*scenes: Any) -> str:
-        drawn = small_png(scenes[0], loaded.assets, *scenes[1:])
-        return f"data:image/png;base64,{base64.b64encode(drawn).decode()}"
 
     scene = loaded.scene
     shown = settled(scene, switches=switches) if scene.signals else scene
-    picture, hidden = _blank(loaded, address(shown)), hidden_layers(scene, switches)
-    if hidden is None:
-        return picture
-    off = [
-        f"{'' if whole else 'part of '}{label_of(element) or 'a layer'} (signal {name})"
-        for element, whole, name in hidden.elements
-    ]
-    return replace(picture, off=off, off_image=address(hidden.shown, shown))
+    image = base64.b64encode(small_png(shown, loaded.assets)).decode()
+    return _blank(loaded, f"data:image/png;base64,{image}")
