@@ -37,7 +37,7 @@ PATIENCE_S = 20.0
 # The header of a frame, as docs/live-view.md has it.
 HEADER = np.dtype(
     [
-        *((name, "<u2") for name in ("samples", "rows", "columns", "signals")),
+        *((name, "<u2") for name in ("rows", "columns", "signals", "unused")),
         *((name, "<u4") for name in ("flags", "state", "line", "part", "late", "spare")),
         *((name, "<f8") for name in ("tick", "time_s")),
         *((name, "<f4") for name in ("x_mm", "y_mm", "theta_rad", "vx_mm_s")),
@@ -47,13 +47,12 @@ HEADER = np.dtype(
 
 
 def parts(frame):
-    """Header, deflections and samples of a frame, of which nothing may be left over."""
+    """Header and deflections of a frame, of which nothing may be left over."""
     header = np.frombuffer(frame, HEADER, 1)[0]
     numbers = np.frombuffer(frame, "<f4", offset=HEADER.itemsize)
-    size, samples = int(header["rows"]) * int(header["columns"]), int(header["samples"])
-    assert numbers.size == size + 3 * samples + header["signals"]
-    deflections = numbers[:size].reshape(header["rows"], header["columns"])
-    return header, deflections, numbers[size : size + 3 * samples].reshape(-1, 3)
+    size = int(header["rows"]) * int(header["columns"])
+    assert numbers.size == size + header["signals"]
+    return header, numbers[:size].reshape(header["rows"], header["columns"])
 
 
 class Reading:

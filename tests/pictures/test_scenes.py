@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from vbraille.pictures.scenes import small_png
+from vbraille.pictures.scenes import hidden_layers, small_png
+from vbraille.render.compiling import settled
 from vbraille.render.labels import Assets
-from vbraille.scene.patterns import Circle, Fill, Group
+from vbraille.scene.patterns import Circle, Fill, Group, Polygon
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.textures import LinearGrating, RadialGrating, Uniform
+from vbraille.scene.signals import Inverse, Speed, Switch, packed
+from vbraille.scene.strokes import Stroke
+from vbraille.scene.textures import LinearGrating, RadialGrating, SignalLevel, Uniform
 
 
 def drawn(canvas, *elements):
@@ -33,3 +36,40 @@ def test_a_map_that_says_little_in_many_bytes_is_coarser(side_mm):
     fine = Group(operation="blend", parts=waves[:2], by=LinearGrating(ridge_mm=2.3))
     pixels = drawn(Canvas(width_mm=side_mm, height_mm=side_mm), Group(parts=(*waves, fine)))
     assert max(pixels.shape) < 0.9 * 300_000**0.5
+
+
+CANVAS = Canvas(width_mm=40, height_mm=20)
+SIGNALS = {"view": Switch(levels=(1.0, 0.0)), "other": Inverse(of="view"), "slow": Speed()}
+RING = Circle(center_mm=(30, 10), radius_mm=5, title="Ring", factor="view", stroke=Stroke())
+FIELD = Polygon(
+    vertices_mm=((1, 1), (19, 1), (19, 19), (1, 19)),
+    title="Field",
+    fill=Fill(texture=Uniform(level=0.5, factor="other")),
+)
+BLEND = Group(
+    operation="blend",
+    parts=(Uniform(level=0.9), Uniform(level=0.4)),
+    by=SignalLevel(name="view"),
+)
+
+
+@pytest.mark.parametrize(
+    ("elements", "state", "told", "ring", "field"),
+    [
+        ((RING, FIELD), 0, [("Field", "other")], 0, 0.5),
+        ((RING, FIELD), 1, [("Ring", "view")], 1, 0),
+        ((BLEND,), 1, [("", "view")], 0, 0),  # the first part is stronger
+        ((Uniform(factor="slow"),), 1, [], 0, 0),
+    ],
+)
+def test_layers_that_are_off_are_told_and_drawn_beyond_what_is_there(
+    elements, state, told, ring, field
+):
+    scene = Scene(canvas=CANVAS, elements=elements, signals=SIGNALS)
+    switches = packed({1: state}, SIGNALS)
+    hidden, every = hidden_layers(scene, switches)
+    assert [(one.title, name) for one, name in hidden] == told
+    content = small_png(every, Assets(), settled(scene, switches=switches))
+    with Image.open(io.BytesIO(content)) as image:
+        off = 1 - np.asarray(image)[[20, 40], [120, 40]] / 255  # the ring's top, and the field
+    assert off == pytest.approx([ring, field], abs=0.01)

@@ -58,9 +58,9 @@ def damaged(tmp_path, chunk):
     return path
 
 
-def look(viewer, at_s, since_s=None, **more):
-    """State, header, deflections and samples at a time."""
-    _, state, frame = viewer.look(Next(at_s=at_s, since_s=since_s, **more), None)
+def look(viewer, at_s):
+    """State, header and deflections at a time."""
+    _, state, frame = viewer.look(Next(at_s=at_s), None)
     return json.loads(state), *parts(frame)
 
 
@@ -73,7 +73,7 @@ def test_each_frame_is_the_recorded_one_forwards_and_backwards():
     assert source.length_s == t_s[-1]
     count = len(frames)
     for n in [*range(0, count, 301), *range(count - 1, 0, -407), 0]:
-        state, header, frame, _ = look(viewer, float(t_s[n]))
+        state, header, frame = look(viewer, float(t_s[n]))
         assert frame.tobytes() == frames[n].tobytes()
         assert (header["tick"], header["time_s"]) == (n, t_s[n])
         assert header["x_mm"] == np.float32(x_mm[n])
@@ -93,21 +93,6 @@ def test_lines_have_their_print_and_the_place_of_each():
     assert state["array"]["rows"] == 6
 
 
-def test_samples_are_the_ticks_since_the_frame_before():
-    viewer = open_recording(recorded()).viewer()
-    # Across the end of a piece, in which they stand in the file.
-    _, header, frame, samples = look(viewer, 1.040, 1.000, row=2, column=9)
-    np.testing.assert_allclose(samples[:, 0], np.arange(39, -1, -1) / 1000, atol=1e-7)
-    assert samples[-1, 2] == frame[2, 9]
-    assert samples[9, 2] == look(viewer, 1.010)[2][2, 9]
-    many = look(viewer, 3.0, 2.0)[3]
-    assert len(many) == 64
-    assert (many[-1, 0], many[0, 0] > 0.9) == (0, True)
-    for since_s in (None, 1.040, 2.0):
-        alone = look(viewer, 1.040, since_s, row=-3, column=99)[3]
-        assert alone[:, :2].tolist() == [[0.0, header["x_mm"]]]
-
-
 def test_times_beyond_the_recording_are_its_ends():
     source = open_recording(recorded())
     viewer = source.viewer()
@@ -121,7 +106,7 @@ def test_times_beyond_the_recording_are_its_ends():
 def test_a_damaged_chunk_is_passed_over(tmp_path):
     viewer = open_recording(damaged(tmp_path, 2)).viewer()
     assert look(viewer, 2.1)[1]["tick"] == 2047
-    assert look(viewer, 4.0, 1.9)[1]["tick"] == 4000
+    assert look(viewer, 4.0)[1]["tick"] == 4000
 
 
 def test_a_page_sees_a_recording_until_ctrl_c():
@@ -132,7 +117,7 @@ def test_a_page_sees_a_recording_until_ctrl_c():
             assert page.welcome["playback"]
             assert not page.welcome["steers"]
             assert page.welcome["moments"][0]["kind"] == "line"
-            header, deflections, _ = page.frame(at_s=0.2)
+            header, deflections = page.frame(at_s=0.2)
             assert header["time_s"] == pytest.approx(0.2, abs=1e-3)
             assert deflections.shape == (6, 10)
             page.ask(ask="press", command="LNDN")

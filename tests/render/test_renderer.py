@@ -8,10 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.render.scenes import cell, examples, frame_at, line, models
-from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array_of, from_left
+from tests.shown import VBD_ARRAY, array_of, from_left
 from tests.tiers import by_tier
 from vbraille.braille import geometry
-from vbraille.braille.geometry import Geometry
 from vbraille.render import (
     MAPPINGS,
     STRESS2,
@@ -87,30 +86,6 @@ def test_the_polynomial_of_every_k_is_the_cosine(cycles, level):
     np.testing.assert_allclose(frames, expected, rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("profile", Profile)
-def test_of_overlapping_dots_the_larger_swing_is_shown(profile):
-    # Both dots of a cell 3 mm wide and 2 mm apart; and the right one reaches into the next cell.
-    crowded = Geometry(3.0, 2.0, 2.5, row_spacing_mm=3.6, line_pitch_mm=14.0)
-    swing = half_sine if profile is Profile.HALF_SINE else raised_cosine
-    renderer = from_left(
-        line(cell(1, 4), cell(1)),
-        array=STRESS2_ARRAY,
-        profile=profile,
-        mapping=MAPPINGS["sheared"],
-        geometry=crowded,
-        tuning=Tuning(texture=1.0, contrast=0.8),
-    )
-    seen = set()
-    for x_mm in np.linspace(-0.5, 8, 171):
-        swings = [swing(x_mm - edge, 3.0, 1.0) for edge in (0.0, 2.0, 4.5)]
-        seen.add(tuple(value > 0.01 for value in swings))
-        frame = frame_at(renderer, x_mm)
-        # The inverted row of the pair goes as far the other way.
-        expected = [1 - 0.8 * max(swings), 0.8 * max(swings), 1, 0, 1, 0]
-        np.testing.assert_allclose(frame[:, 0], expected, rtol=0, atol=1e-12)
-    assert {(True, True, False), (False, True, True)} <= seen
-
-
 @pytest.mark.parametrize("mapping", MAPPINGS.values(), ids=MAPPINGS)
 def test_a_mapping_that_needs_more_rows_than_there_are(mapping):
     needs = f"^mapping {mapping.name} needs {mapping.rows} actuator rows from row 0 on"
@@ -124,18 +99,6 @@ def test_a_mapping_that_needs_more_rows_than_there_are(mapping):
             geometry=VBD.style.geometry,
             tuning=VBD.style.tuning,
         )
-
-
-@pytest.mark.parametrize("mapping", SIX, ids=[each.name for each in SIX])
-def test_the_lateros_outer_two_rows_rest(mapping, rng):
-    masks = rng.integers(0, 64, 5).astype(np.uint8)
-    x_mm = np.linspace(-9, 60, 90)
-    upper, all_rows = (
-        models(masks, mapping=mapping, array=array)["stress2"].renderer().path(x_mm)
-        for array in (array_of(6, 8, 1.2, 1.6125), LATERO)
-    )
-    np.testing.assert_allclose(all_rows[:, 1:7], upper, rtol=0, atol=1e-7)
-    np.testing.assert_array_equal(all_rows[:, [0, 7]], 0.0)
 
 
 # Where frames are put

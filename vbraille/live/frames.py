@@ -15,10 +15,9 @@ if TYPE_CHECKING:
 
     from vbraille.live.messages import Next, PlayedEvent, Steering
 
-# Number of samples, sizes of the frame, number of signals; then `FrameHeader`.
-_HEADER: Final = struct.Struct("<4H5I4x2d8f")
+# Sizes of the frame, number of signals; then `FrameHeader`.
+_HEADER: Final = struct.Struct("<3H2x5I4x2d8f")
 _U32: Final = 0xFFFFFFFF
-_MOST_SAMPLES: Final = 64
 EMPTY: Final = np.zeros((0, 0), np.float32)
 
 
@@ -67,7 +66,6 @@ class FrameHeader(NamedTuple):
 def frame_bytes(
     header: FrameHeader,
     deflections: NDArray[np.float32] = EMPTY,
-    samples: NDArray[np.floating] = EMPTY,
     signals: NDArray[np.floating] = EMPTY,
 ) -> bytes:
     """Pack a frame.
@@ -78,17 +76,12 @@ def frame_bytes(
         Numbers of the tick.
     deflections
         float32[rows, columns], 0 … 1; 0 × 0 where they are hidden.
-    samples
-        float32[n, 3], oldest first: seconds before this tick, place along x in mm, deflection of
-        the actuator that the page follows. They are thinned out evenly to 64.
     signals
         Values of a picture's signals, float32[n].
     """
-    if len(samples) > _MOST_SAMPLES:  # the newest stays
-        samples = samples[np.arange(1, _MOST_SAMPLES + 1) * len(samples) // _MOST_SAMPLES - 1]
     whole = (number & _U32 for number in header[:5])
-    packed = _HEADER.pack(len(samples), *deflections.shape, signals.size, *whole, *header[5:])
-    parts = (np.asarray(part, np.float32) for part in (deflections, samples, signals))
+    packed = _HEADER.pack(*deflections.shape, signals.size, *whole, *header[5:])
+    parts = (np.asarray(part, np.float32) for part in (deflections, signals))
     return packed + b"".join(part.tobytes() for part in parts)
 
 

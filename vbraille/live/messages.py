@@ -29,16 +29,11 @@ class Next(Request, frozen=True, tag="next"):
 
     Parameters
     ----------
-    row, column
-        Actuator whose deflection the samples hold, from 0.
-    at_s, since_s
-        In a recording, time of the frame and of the frame before, in seconds from its start.
+    at_s
+        In a recording, time of the frame, in seconds from its start.
     """
 
-    row: int = 0
-    column: int = 0
     at_s: float | None = None
-    since_s: float | None = None
 
 
 class PagePress(Request, frozen=True, tag="press"):
@@ -174,6 +169,8 @@ class SceneShown(msgspec.Struct, frozen=True):
         Address (``data:``) of its deflection map; white is rest. Empty where there is none.
     left_mm, top_mm
         Place on the canvas where the carriage is at 0, 0.
+    off, off_image
+        Layers that are off, each with the signal that hides it, and a map of these alone.
     """
 
     title: str
@@ -183,6 +180,8 @@ class SceneShown(msgspec.Struct, frozen=True):
     image: str = ""
     left_mm: float = 0.0
     top_mm: float = 0.0
+    off: list[str] = []
+    off_image: str = ""
 
 
 class BesideShown(msgspec.Struct, frozen=True):

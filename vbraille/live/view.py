@@ -11,7 +11,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
-from vbraille.live.frames import EMPTY, FrameHeader, frame_bytes
+from vbraille.live.frames import FrameHeader, frame_bytes
 from vbraille.live.messages import LetGo, Point, ViewState, to_json
 from vbraille.live.server import Server, open_browser
 
@@ -151,8 +151,8 @@ class DeviceViewer:
         self._of: RingReader | None = None
         self._last: NDArray[np.void] | None = None  # the newest tick
 
-    def look(self, request: Next, told: int | None) -> tuple[int, bytes, bytes] | None:
-        """Give the state, and the newest tick with those since the last call as samples."""
+    def look(self, request: Next, told: int | None) -> tuple[int, bytes, bytes] | None:  # noqa: ARG002
+        """Give the state, and the newest tick."""
         view = self._view
         number, state = view.told
         if view.ticks is not None and view.ticks is not self._of:
@@ -173,13 +173,7 @@ class DeviceViewer:
             work_us=tick["work_ns"] / 1e3,
             age_ms=(time.monotonic_ns() - int(tick["time_ns"])) / 1e6,
         )
-        rows, columns = tick["frame"].shape
-        followed = np.full(ticks.size, np.nan)
-        if not view.blind and 0 <= request.row < rows and 0 <= request.column < columns:
-            followed = ticks["frame"][:, request.row, request.column]
-        ago_s = (tick["time_ns"] - ticks["time_ns"]) * 1e-9
-        samples = np.stack([ago_s, ticks["x_mm"], followed], axis=1)
         if view.blind:
-            return number, state, frame_bytes(header, EMPTY, samples)
+            return number, state, frame_bytes(header)
         signals = [tick[f"signal_{n + 1}"] for n in range(view.signals)]
-        return number, state, frame_bytes(header, tick["frame"], samples, np.array(signals))
+        return number, state, frame_bytes(header, tick["frame"], np.array(signals))

@@ -14,8 +14,7 @@ from vbraille.errors import InputError
 from vbraille.labelling import write_label
 from vbraille.pictures.index import label_of
 from vbraille.pictures.loading import LoadedScene, with_assets
-from vbraille.render.labels import corners_mm
-from vbraille.scene.bounds import Box, around
+from vbraille.scene.bounds import Box
 from vbraille.scene.locations import Locations, OpenedScene
 from vbraille.scene.patterns import Circle, Fill, Label, PathShape, Polygon
 from vbraille.scene.scene import Canvas, Scene
@@ -35,9 +34,10 @@ def crowded(loaded: LoadedScene) -> list[Label]:
     canvas = Box(0.0, 0.0, size.width_mm, size.height_mm)
     standing: list[Box] = []
     found: list[Label] = []
+    boxes = loaded.boxes()
     for label in each(*loaded.scene.elements):
-        if isinstance(label, Label) and label in loaded.assets.written:
-            box = around(corners_mm(label, loaded.assets.written[label]))
+        if isinstance(label, Label) and label in boxes:
+            box = boxes[label]
             fits = box.common(canvas) == box
             if fits and all(box.common(other).is_empty for other in standing):
                 standing.append(box)

@@ -43,8 +43,6 @@ PLAYED: Final = np.dtype(
 _HEADER: Final = PLAYED.names[:-1] if PLAYED.names else ()
 # A page asks for the next frame of the same piece soon.
 _MOST_PIECES: Final = 12
-# A page that asks for a time far from the one before gets ticks of so long a stretch, no more.
-_LONGEST_S: Final = 4.0
 
 
 class Piece(NamedTuple):
@@ -148,11 +146,7 @@ class RecordingViewer:
         self._at_s = 0.0
 
     def look(self, request: Next, told: int | None) -> tuple[int, bytes, bytes]:  # noqa: ARG002
-        """Give the frame of a time, and the ticks since the frame before it as samples.
-
-        A page that only draws on gets ticks between the two times that it names. If it went back,
-        or begins, it gets this tick alone.
-        """
+        """Give the frame of a time."""
         recording = self._recording
         if request.at_s is not None and math.isfinite(request.at_s):
             self._at_s = min(max(request.at_s, 0.0), recording.length_s)
@@ -167,29 +161,4 @@ class RecordingViewer:
             work_us=math.nan,
         )
         felt = EMPTY if np.isnan(frame).any() else frame
-        samples = self._samples(request, number, index)
-        return scene + 1, recording.state(scene), frame_bytes(header, felt, samples)
-
-    def _samples(self, request: Next, number: int, index: int) -> NDArray[np.float64]:
-        """Collect the ticks after the frame before, up to this one."""
-        piece = self._recording.piece(number)
-        now_s = piece.ticks["time_s"][index]
-        since_s = now_s if request.since_s is None else max(request.since_s, now_s - _LONGEST_S)
-        row, column = (
-            min(max(wanted, 0), most - 1)
-            for wanted, most in zip(
-                (request.row, request.column), piece.frames.shape[1:], strict=True
-            )
-        )
-        first, stop = min(piece.after(since_s), index), index + 1
-        parts = []
-        while True:
-            ticks = piece.ticks[first:stop]
-            ago_s = now_s - ticks["time_s"]
-            followed = piece.frames[first:stop, row, column]
-            parts.insert(0, np.stack([ago_s, ticks["x_mm"], followed], axis=1))
-            if first or not number or since_s >= now_s:
-                return np.concatenate(parts)
-            number -= 1
-            piece = self._recording.piece(number)
-            first, stop = piece.after(since_s), len(piece.ticks)
+        return scene + 1, recording.state(scene), frame_bytes(header, felt)

@@ -262,11 +262,24 @@ def _blank(loaded: LoadedScene, image: str) -> SceneShown:
 
 
 def _drawn(loaded: LoadedScene, switches: int) -> SceneShown:
-    """Draw a scene as its switches have it."""
-    from vbraille.pictures.scenes import small_png
+    """Draw a scene as its switches have it, and the layers that are off."""
+    from vbraille.pictures.index import label_of
+    from vbraille.pictures.scenes import hidden_layers, small_png
     from vbraille.render.compiling import settled
+
+    def address(*scenes: Any) -> str:
+        drawn = small_png(scenes[0], loaded.assets, *scenes[1:])
+        return f"data:image/png;base64,{base64.b64encode(drawn).decode()}"
 
     scene = loaded.scene
     shown = settled(scene, switches=switches) if scene.signals else scene
-    image = base64.b64encode(small_png(shown, loaded.assets)).decode()
-    return _blank(loaded, f"data:image/png;base64,{image}")
+    picture = _blank(loaded, address(shown))
+    if not scene.signals:
+        return picture
+    hidden, every = hidden_layers(scene, switches)
+    off = [
+        f"{'' if element.factor == name else 'part of '}{label_of(element) or 'a layer'} "
+        f"(signal {name})"
+        for element, name in hidden
+    ]
+    return replace(picture, off=off, off_image=address(every, shown)) if off else picture

@@ -307,7 +307,7 @@ class _Writer:
         begin = len(self.numbers)
         before = self._measured
         yield
-        self.numbers[begin - 1] = len(self.numbers) - begin
+        self.numbers[begin - 1] = work.CODE + len(self.numbers)  # where to go on then
         if self._measured is not before:  # the coordinates may have been skipped
             self._measured = None
 

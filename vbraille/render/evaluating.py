@@ -144,17 +144,19 @@ def _find_live(numbers, rows, count):
     here, found, depth = CODE, 0, 0
     while numbers[here] != END:
         operation, own = int(numbers[here]), numbers[here + HEAD :]
-        length = int(numbers[here + 1])
         if operation == GATE:
-            beside = own[0] > right or own[2] < left or own[1] > bottom or own[3] < top
+            # Without branches, which could not be foreseen.
+            aside = (own[0] > right) | (own[2] < left)
+            beside = aside | (own[1] > bottom) | (own[3] < top)
             # In a tile, or in what moves, places are elsewhere.
             if (beside and depth == 0) or gates & int(own[4]) != 0:
-                length += int(own[5])
+                here = int(own[5])
+                continue
         else:
             rows[LIVE_ROW + found // width, found % width] = here
             found += 1
         depth += (operation in (WRAP, SHIFT)) - (operation == RESTORE)
-        here += length
+        here += int(numbers[here + 1])
     return found
 
 

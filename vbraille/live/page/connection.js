@@ -12,18 +12,16 @@ const SLOW_MS = 12; // beside a frame that takes longer, a second one is asked f
 /** Reads a frame out of its bytes. */
 function readFrame(bytes) {
   const view = new DataView(bytes);
-  const [samples, rows, columns, signals] = [0, 2, 4, 6].map((at) => view.getUint16(at, true));
+  const [rows, columns, signals] = [0, 2, 4].map((at) => view.getUint16(at, true));
   const [flags, state, line, part, late] = [8, 12, 16, 20, 24].map((at) => view.getUint32(at, true));
   const [tick, time_s] = [32, 40].map((at) => view.getFloat64(at, true));
   const [x_mm, y_mm, theta_rad, vx_mm_s, lateness_us, work_us, share, age_ms] = new Float32Array(bytes, 48, 8);
   const size = rows * columns;
-  const traced = HEADER_BYTES + 4 * size;
   return {
     rows, columns, flags, state, line, part, late, tick, time_s,
     x_mm, y_mm, theta_rad, vx_mm_s, lateness_us, work_us, share, age_ms,
     deflections: new Float32Array(bytes, HEADER_BYTES, size),
-    samples: new Float32Array(bytes, traced, 3 * samples),
-    signals: new Float32Array(bytes, traced + 12 * samples, signals),
+    signals: new Float32Array(bytes, HEADER_BYTES + 4 * size, signals),
   };
 }
 

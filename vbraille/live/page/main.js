@@ -13,7 +13,6 @@ import { Playback } from "./playback.js";
 import { Sheet } from "./sheet.js";
 import { Beside, Skin } from "./skin.js";
 import { Telling, tables } from "./telling.js";
-import { Traces } from "./traces.js";
 
 const READ_MS = 100; // how often numbers change: people cannot read them faster
 const CALM_MS = 1000; // how often anything changes where motion is to be reduced
@@ -44,7 +43,6 @@ const connection = new Connection(token(), {
     queue = [];
     byId("again").hidden = true;
     playback.begin(said);
-    traces.wipe();
     fresh ??= state;
     wake();
   },
@@ -72,14 +70,12 @@ const ask = (request) => connection.ask(request);
 const sheet = new Sheet(byId("sheet"));
 const skin = new Skin();
 const beside = new Beside();
-const traces = new Traces(byId("scopes"));
 const telling = new Telling();
 const signals = new Signals();
 const cards = new Cards(ask);
 const knobs = new Knobs(ask, wake);
 const hand = new Hand(sheet, ask, wake);
 const playback = new Playback(wake);
-skin.onchoose = () => traces.show(state, skin.chosen);
 
 /** The token of the address; it stays for this tab, and goes out of the address bar. */
 function token() {
@@ -123,8 +119,8 @@ function beat(now) {
     return;
   }
   if (queue.length && state) draw(now);
-  if (!playback.on) connection.pull(() => skin.chosen);
-  else if (playback.wanted) connection.pull(() => ({ ...skin.chosen, ...playback.request() }), 1);
+  if (!playback.on) connection.pull(() => ({}));
+  else if (playback.wanted) connection.pull(() => playback.request(), 1);
 }
 
 /** Shows a new state. */
@@ -138,7 +134,6 @@ function show() {
   sheet.show(state);
   skin.show(state);
   beside.show(state);
-  traces.show(state, skin.chosen);
   knobs.show(state, steers, whyNot(open));
   hand.show(state, steers);
   signals.show(state);
@@ -169,7 +164,6 @@ function pageNote() {
 }
 
 function draw(now) {
-  for (const each of queue) traces.take(each);
   frame = queue[queue.length - 1];
   queue = [];
   sheet.move(state, frame);
@@ -193,7 +187,6 @@ function read() {
   told = drawn;
   telling.read(state, frame);
   signals.read(frame);
-  traces.draw();
 }
 
 byId("say").addEventListener("click", () => {

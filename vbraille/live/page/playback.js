@@ -30,7 +30,6 @@ export class Playback {
   at_s = 0;
   playing = false;
   wanted = false; // whether a frame is wanted that was not asked for
-  #since = null;
   #length = 0;
   #from = 0; // what the timeline shows
   #span = 0;
@@ -154,7 +153,6 @@ export class Playback {
   /** Goes to a time. */
   go(at_s) {
     this.at_s = clamp(at_s, 0, this.#length);
-    this.#since = null;
     this.wanted = true;
     this.show();
     this.wake();
@@ -162,9 +160,7 @@ export class Playback {
 
   #step(by_s) {
     if (this.playing) this.#toggle();
-    const since = this.at_s;
     this.go(this.at_s + by_s);
-    if (by_s > 0) this.#since = since;
   }
 
   #jump(way) {
@@ -193,10 +189,8 @@ export class Playback {
 
   /** What to ask for now. */
   request() {
-    const asked = { at_s: this.at_s, since_s: this.#since };
-    this.#since = this.at_s;
     this.wanted = false;
-    return asked;
+    return { at_s: this.at_s };
   }
 
   /** Shows where the recording is. */

@@ -26,8 +26,7 @@ export function strains(array, deflections) {
 }
 
 export class Skin {
-  chosen = { row: 0, column: 0 }; // the actuator that is followed
-  onchoose = () => {};
+  chosen = { row: 0, column: 0 }; // the actuator that the keys have come to
   #state = null;
   #frame = null;
   #px_mm = 20;
@@ -224,7 +223,7 @@ export class Skin {
     });
   }
 
-  /** Chooses the actuator that is followed. */
+  /** Comes to an actuator. */
   choose(row, column, focus) {
     const { array } = this.#state;
     const n = row * array.columns + column;
@@ -239,7 +238,6 @@ export class Skin {
     const corner = [this.#seats[n][0] - wide / 2 - this.corner.x, this.#seats[n][1] - high / 2 - this.corner.y];
     const px = [...corner, wide, high].map((mm, at) => `${(mm * this.#px_mm + (at < 2 ? 1 : -2)).toFixed(2)}px`);
     [this.ring.style.left, this.ring.style.top, this.ring.style.width, this.ring.style.height] = px;
-    this.onchoose();
   }
 
   /** Names an actuator with what it does now. */

@@ -282,10 +282,9 @@ class SvgDrawing:
             sentence = f"line {line}: {name}: {remark}" if line else f"{name}: {remark}"
             if others:
                 lines = [str(line) for line in sorted({line for line, _ in others})]
+                where = f"line{'s' * (len(lines) > 1)} {', '.join(lines[:_NAMED_LINES])}"
                 more = " and others" * (len(lines) > _NAMED_LINES)
-                sentence += (
-                    f"; and {len(others)} more, in lines {', '.join(lines[:_NAMED_LINES])}{more}"
-                )
+                sentence += f"; and {len(others)} more, in {where}{more}"
             said.append(sentence)
         said += [
             f"nothing that is shown has the class, label or id {name}, which the scene speaks of"
