@@ -54,9 +54,6 @@ class CellsTaken(NamedTuple):
     at_ns: int
 
 
-FromDisplay = DisplayStands | DisplayAway | CellsTaken
-
-
 def load_brlapi() -> Any:
     """Load python3-brlapi, which the system brings and no registry has.
 
@@ -109,7 +106,7 @@ class ConventionalDisplay:
         self.away = ""
         self._brlapi = load_brlapi()
         self._host = found[1] or ""
-        self._told: queue.SimpleQueue[FromDisplay] = queue.SimpleQueue()
+        self._told: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._wanted: tuple[int, bytes | None] = 0, b""
         self._wakes = threading.Event()
         self._ended = self._is_lost = False
@@ -139,12 +136,12 @@ class ConventionalDisplay:
         self._wanted = self._wanted[0] + 1, None
         self._wakes.set()
 
-    def poll(self) -> list[FromDisplay]:
+    def poll(self) -> list[Any]:
         """Take what has happened since the last call: cells taken, that it came or went.
 
         That the display is there, or is not, is given when it changes.
         """
-        changes: list[FromDisplay] = []
+        changes: list[Any] = []
         if self.standing and time.monotonic() - self._beat_s > _SILENT_S:
             self._is_lost = True  # the thread tells it again once it comes back
             self._told.put(DisplayAway(_STILL))

@@ -14,7 +14,7 @@ from vbraille.devices.events import Placing
 from vbraille.errors import DeviceError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -192,12 +192,19 @@ class Device(ABC):
                 f"{self.display.name} has {self.display.rows} × {self.display.columns} actuators; "
                 f"the frame has shape {frame.shape}"
             )
-        # A NaN fails these comparisons, too.
-        if not (frame.min() >= 0.0 and frame.max() <= 1.0):
+        if not self._in_range(np.ascontiguousarray(frame, np.float64)):
             raise DeviceError("a deflection is not in [0, 1]; the frame was not sent")
         if self._correction is not None:
             frame = self._correction.of(frame, self.rested)
         return self._send(frame) is not False
+
+    @cached_property
+    def _in_range(self) -> Callable[[NDArray[np.float64]], bool]:
+        # numba is heavy, and those who only know of devices need none. numpy's `min` and `max` take
+        # 20 µs of a tick of the host process, whose caches are cold.
+        from vbraille.devices.levels import in_range
+
+        return in_range
 
     @cached_property
     def _shape(self) -> tuple[int, int]:

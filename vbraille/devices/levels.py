@@ -1,4 +1,4 @@
-"""Compiled step of each frame on its way to actuators: levels packed for the wire."""
+"""Compiled steps of each frame on its way to actuators: a check, and levels packed for the wire."""
 
 import numpy as np
 from numba import njit
@@ -6,6 +6,16 @@ from numba import njit
 from vbraille.caching import keep_compiled
 
 _compiled = njit(cache=keep_compiled(), error_model="numpy", nogil=True)
+
+
+@_compiled
+def in_range(frame):
+    """Tell whether all deflections of a frame, float64[rows, columns], are numbers in [0, 1]."""
+    for row in range(frame.shape[0]):
+        for column in range(frame.shape[1]):
+            if not 0.0 <= frame[row, column] <= 1.0:  # NaN fails, too
+                return False
+    return True
 
 
 @_compiled

@@ -64,6 +64,7 @@ class SerialDevice(Device):
 
         self._pack = pack
         self._address = address
+        self._boot_s = address.options.get("boot", BOOT_S)
         self._now_ns, self._pause = now_ns, pause
         self._identity = None if address.is_socket else usb_identity(address.where)
         self._silent_ns = round((_SOCKET_S if address.is_socket else self._boot_s) * 1e9)
@@ -79,10 +80,6 @@ class SerialDevice(Device):
         except BaseException:
             self._line.close()
             raise
-
-    @property
-    def _boot_s(self) -> float:
-        return self._address.options.get("boot", BOOT_S)
 
     def _greet(self) -> None:
         """Wait until the device says what it is, and whether it knows its place."""

@@ -117,7 +117,7 @@ class Loop(LoopState):
         if not self.advance(times_ns, self._poses, device.rested, taking, ring.columns, slot):
             raise self._nowhere()
         if device.write(self.output):
-            self.now["sent_ns"] = clock.now_ns()
+            self._sent_ns[0] = clock.now_ns()
         elif device.taking:  # otherwise the actuators rest, as the next tick finds
             self.unsent()
         done_ns = clock.now_ns()

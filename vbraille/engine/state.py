@@ -92,6 +92,7 @@ class LoopState:
         check_range("rate", rate_hz, 1, 10_000, " Hz")
         state = np.zeros(1, _STATE)
         self.now = now = state[0]
+        self._sent_ns, self._faded_ns = state["sent_ns"], state["faded_ns"]
         period_s = 1 / rate_hz
         for name, duration_s in (
             ("period_ns", period_s),
@@ -188,7 +189,7 @@ class LoopState:
     ) -> int:
         """Do ticks and return how many were done; see `vbraille.engine.ticks.advance`."""
         np.copyto(self._before, self.output)
-        self._before_ns = self.now["sent_ns"], self.now["faded_ns"]
+        self._before_ns = self._sent_ns[0], self._faded_ns[0]
         program = self._program.numbers, self._program.table, self._program.scratch
         return ticks.advance(
             *self._known, *program, times_ns, poses, rested, taking, *columns, first
@@ -197,4 +198,4 @@ class LoopState:
     def unsent(self) -> None:
         """Forget the frame last made, which did not go out: the actuators are where they were."""
         np.copyto(self.output, self._before)
-        self.now["sent_ns"], self.now["faded_ns"] = self._before_ns
+        self._sent_ns[0], self._faded_ns[0] = self._before_ns

@@ -99,7 +99,6 @@ _END_S: Final = 2.0  # and to bring blades to rest, or after a client that was k
 
 # Notices, each by its code.
 POWER_OFF, PLACE, ENCODERS = 1, 2, 3
-UNPOWERED: Final = "its motor power is off; switch it on, and reading goes on"
 NO_SWITCH: Final = (
     "how its motor power is switched is not known, so that it stays on; give power=ADDRESS"
 )
@@ -181,10 +180,11 @@ def parse_latero_address(text: str) -> LateroAddress:
 
 
 def _whole(text: str) -> int:
-    """Number that a text is, of at most 16 bits or so; -1 if it is none."""
-    if re.fullmatch(r"0x[0-9a-fA-F]{1,4}", text):
-        return int(text, 16)
-    return int(text) if re.fullmatch(r"[0-9]{1,5}", text) else -1
+    """Number that a text is; -1 if it is none."""
+    try:
+        return int(text, 16 if "x" in text else 10)
+    except ValueError:
+        return -1
 
 
 class WatchdogProcess:
@@ -378,7 +378,7 @@ class LateroDevice(Device):
         self._away: Event | None = None  # why nothing can be read
         self._held = self._pressed = 0  # buttons, a bit each: as they are read, and debounced
         self._held_ns = 0
-        self._reconnections = self._unsent = self._trips = 0
+        self._reconnections = self._unsent = self.watchdog_trips = 0
 
     def greet(self) -> None:
         """Ask until the Latero has answered, with its blades at rest.
@@ -459,14 +459,9 @@ class LateroDevice(Device):
         )
 
     @property
-    def watchdog_trips(self) -> int:  # type: ignore[override]
-        """Number of times that no frame was sent in time, and the watchdog acted."""
-        return self._trips
-
-    @property
     def tripped_ms(self) -> float | None:  # type: ignore[override]
         """Time from the last request to when the watchdog last tripped."""
-        return self.watchdog.board.words[AFTER] / _MS if self._trips else None
+        return self.watchdog.board.words[AFTER] / _MS if self.watchdog_trips else None
 
     def set_zero(self) -> None:
         """Take the place for the lower left corner with the third arm straight up."""
@@ -486,7 +481,7 @@ class LateroDevice(Device):
             "requests not answered": requests.lost,
             "late or doubled answers": requests.late,
             "foreign datagrams": sum(self.foreign.values()) + requests.unasked,
-            "watchdog trips": self._trips,
+            "watchdog trips": self.watchdog.board.words[TRIPS],
             "reconnections": self._reconnections,
         }
 
@@ -561,9 +556,9 @@ class LateroDevice(Device):
         words = self.watchdog.board.words
         if stopped or words[ACTING]:
             self._heard_ns = now_ns  # no request went out meanwhile
-        if words[TRIPS] != self._trips:
-            self._trips = words[TRIPS]
-            self._events.append(WatchdogTripped(self._trips))
+        if words[TRIPS] != self.watchdog_trips:
+            self.watchdog_trips = words[TRIPS]
+            self._events.append(WatchdogTripped(self.watchdog_trips))
             self._stop()
         elif stopped and self.taking and self._levels.min() < REST:
             self._stop()
@@ -661,7 +656,8 @@ class LateroDevice(Device):
             self._raw = raw_request(WRITE | CONTROLLER, self.power, POWERED_ON)
         self._tries += 1
         if self._tries == (_TRIES * RAW_NS // ASK_NS if self._raw else 1):
-            self._events.append(Notice(POWER_OFF, UNPOWERED))
+            why = "its motor power is off; switch it on, and reading goes on"
+            self._events.append(Notice(POWER_OFF, why))
 
     def _press(self, held: int, now_ns: int) -> None:
         """Tell of buttons that were pressed or let go."""

@@ -17,7 +17,6 @@ VERSION: Final = 0x11  # version 1, revision 1
 FULL, IO, RAW = 0x01, 0x02, 0x03
 FULLR0, FULLR1, RAWR = 0x81, 0x82, 0x83
 REQUEST_BYTES: Final = 100
-PADDING: Final = 0xFF
 BLADES: Final = 64
 BLADES_AT: Final = 15  # index of blade 0 in a FULL; blade 8 · row + column follows
 REST: Final = 150  # a blade at the right; 0 is at the left, in full deflection
@@ -122,7 +121,7 @@ class LateroRequest:
 
 def blank(kind: int) -> bytearray:
     """Request of a kind without contents: its head with the number 0, and padding."""
-    request = bytearray((PADDING,)) * REQUEST_BYTES
+    request = bytearray(b"\xff" * REQUEST_BYTES)
     _HEAD.pack_into(request, 0, MAGIC, VERSION, kind, 0)
     return request
 
