@@ -58,7 +58,7 @@ def rows_shown(style: BrailleStyle, display: Display) -> list[tuple[int, int]]:
 
 
 def beside_shown(
-    style: BrailleStyle, display: Display, masks: NDArray[np.uint8], start_mm: float, words: str
+    style: BrailleStyle, display: Display, masks: NDArray[np.uint8], words: str
 ) -> BesideShown:
     """Show the cells of a line in another style.
 
@@ -70,8 +70,6 @@ def beside_shown(
         The actuators.
     masks : uint8[cells]
         Dot masks of the cells under the hand.
-    start_mm
-        Left edge of the first of them.
     words
         Words for the mapping.
     """
@@ -84,7 +82,7 @@ def beside_shown(
     return BesideShown(
         words,
         rows_shown(style, display),
-        start_mm - pitch_mm,
+        -pitch_mm,
         _BESIDE_MM,
         [base64.b64encode(row.tobytes()).decode() for row in rows],
     )
@@ -108,7 +106,6 @@ def line_shown(
     *,
     first: int = 0,
     count: int | None = None,
-    start_mm: float = 0.0,
     top_mm: float = 0.0,
     number: int | None = None,
     under: bool = False,
@@ -121,8 +118,8 @@ def line_shown(
         The line.
     first, count
         Cell that stands first, before the line if it is below 0, and how many are shown.
-    start_mm, top_mm
-        Left edge of the first of these cells, and upper edge of the line.
+    top_mm
+        Upper edge of the line.
     number
         Number of the line in frames; None for the line's own.
     under
@@ -145,7 +142,7 @@ def line_shown(
     return LineShown(
         number=line.id if number is None else number,
         text=text,
-        start_mm=start_mm,
+        start_mm=0.0,
         top_mm=top_mm,
         cells=cells.tolist(),
         sources=[(begin, end) for begin, end in sources.tolist()],

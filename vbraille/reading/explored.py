@@ -79,6 +79,10 @@ class Explored:
         """Say that a value is the largest there is, or the smallest."""
         self.refuse(f"{said} is the {'maximum' if up else 'minimum'}")
 
+    def refuse_step(self, step: int, thing: str) -> None:
+        """Say that there is no next thing, or no previous one where the step is -1."""
+        self.refuse(f"no {'next' if step > 0 else 'previous'} {thing}")
+
     def ask(
         self, question: str, answer: Callable[[str], None], earlier: Sequence[str] = ()
     ) -> None:

@@ -48,7 +48,7 @@ class _Rendered:
         first: int,
         rate_hz: float,
         frames: NDArray[np.floating],
-        path: tuple[NDArray[np.float64], ...],
+        path: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
         part: NDArray[np.int64],
     ) -> Recording:
         from vbraille.recording import Recording  # loads h5py

@@ -177,7 +177,7 @@ class Game(Explored):
         places = range(self.place + step, len(self.cards) if step > 0 else -1, step)
         place = next((each for each in places if self.sides[each] == DOWN), None)
         if place is None:
-            self.refuse(f"no {'next' if step > 0 else 'previous'} card face down")
+            self.refuse_step(step, "card face down")
         else:
             self.place = place
             self.say_place()

@@ -147,7 +147,7 @@ class LiveOutput(Output):
         if reader.beside_mapping is not None:
             other = style.replace(mapping=reader.beside_mapping)
             words = mapping_said(other.mapping)
-            beside = beside_shown(other, self._device.display, reader.part.masks, 0.0, words)
+            beside = beside_shown(other, self._device.display, reader.part.masks, words)
         return {
             "title": source.title or Path(source.name).name,
             "geometry": geometry_shown(geometry),

@@ -21,22 +21,20 @@ _LOOKED_BACK = 5000  # blocks, for the page and the heading
 LINES_PER_PAGE = 25  # of a braille page, where the book has no pages of print
 
 
-@command("next line", "n down", "down", also="button:1 pins:LNDN", first=True, steers=True)
-def next_line(reader: Reader) -> None:
-    _go(reader, 1)
-
-
-@command("previous line", "p up", "up", also="button:2 pins:LNUP", first=True, steers=True)
-def previous_line(reader: Reader) -> None:
-    _go(reader, -1)
+@both_ways(
+    "line", "n down p up", "down up", "button:1 pins:LNDN button:2 pins:LNUP",
+    first=True, steers=True,
+)  # fmt: skip
+def line(reader: Reader, step: int) -> None:
+    _go(reader, step)
 
 
 def _go(reader: Reader, step: int, *, at_end: bool = False) -> None:
-    line = reader.beside(step)
-    if line is None:
-        reader.refuse("no next line" if step > 0 else "no previous line")
+    other = reader.beside(step)
+    if other is None:
+        reader.refuse_step(step, "line")
         return
-    reader.show(line, len(line) - 1 if at_end else 0)
+    reader.show(other, len(other) - 1 if at_end else 0)
     reader.announce()
 
 
@@ -104,7 +102,7 @@ def skip_blank(reader: Reader) -> None:
 )
 def surface_page(reader: Reader, step: int) -> None:
     if not reader.turn_page(step):
-        reader.refuse("no next page" if step > 0 else "no previous page")
+        reader.refuse_step(step, "page")
     elif not reader.rows:
         reader.announce()
 

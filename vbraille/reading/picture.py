@@ -425,7 +425,7 @@ class Picture(Explored):
         if 0 <= number < count:
             self._go_to(number)
         else:
-            self.refuse(f"no {'next' if step > 0 else 'previous'} element")
+            self.refuse_step(step, "element")
 
     @_command("go to the middle of the picture", "home")
     def middle(self) -> None:

@@ -21,6 +21,26 @@ _LINKS = (MarkKind.LINK, MarkKind.NOTE)
 _MOST_LISTED = 100  # headings; of more, those of the upper levels are listed
 
 
+def heading_said(block: Block, level: int | None = None) -> str:
+    """Sentence on a heading; empty for other blocks, and for another level than the one wanted."""
+    if block.heading is None or (level is not None and block.heading[0] != level):
+        return ""
+    return f"heading level {block.heading[0]}: {block.heading[1]}"
+
+
+def _paragraph_said(block: Block) -> str:
+    return heading_said(block) or block.kind.value if block.words else ""
+
+
+def _item_said(block: Block) -> str:
+    return f"item: {_plain(block)}" if block.kind is BlockKind.ITEM else ""
+
+
+def _plain(block: Block) -> str:
+    """Words of a block, without the bullet of an item."""
+    return block.words.removeprefix("• ")
+
+
 def _go(reader: Reader, step: int, thing: str, said: Callable[[Block], str]) -> None:
     """Go to the next block of which something can be said, or to the one before."""
     here = reader.line.block
@@ -32,37 +52,7 @@ def _go(reader: Reader, step: int, thing: str, said: Callable[[Block], str]) -> 
         if words:
             reader.jump(block.start, words)
             return
-    _refuse(reader, step, thing)
-
-
-def _refuse(reader: Reader, step: int, thing: str) -> None:
-    reader.refuse(f"no {'next' if step > 0 else 'previous'} {thing}")
-
-
-@both_ways(
-    "paragraph", "a ctrl-down A ctrl-up", "p ctrl-down P ctrl-up", also="pins:NXPGRPH pins:PRPGRPH"
-)
-def paragraph(reader: Reader, step: int) -> None:
-    def said(block: Block) -> str:
-        return heading_said(block) or block.kind.value if block.words else ""
-
-    _go(reader, step, "paragraph", said)
-
-
-@both_ways("heading", "e E", "h H", first=True)
-def heading(reader: Reader, step: int) -> None:
-    _go(reader, step, "heading", heading_said)
-
-
-def heading_said(block: Block, level: int | None = None) -> str:
-    """Sentence on a heading; empty for other blocks, and for another level than the one wanted."""
-    if block.heading is None or (level is not None and block.heading[0] != level):
-        return ""
-    return f"heading level {block.heading[0]}: {block.heading[1]}"
-
-
-def _level(reader: Reader, level: int) -> None:
-    _go(reader, 1, f"heading of level {level}", partial(heading_said, level=level))
+    reader.refuse_step(step, thing)
 
 
 def _group(reader: Reader, step: int, thing: str, kind: BlockKind) -> None:
@@ -70,23 +60,15 @@ def _group(reader: Reader, step: int, thing: str, kind: BlockKind) -> None:
 
     def said(block: Block) -> str:
         before = reader.book.source.block(block.number - 1) if block.number else None
-        if block.kind is not kind:
-            return ""
-        if before is not None and (
+        goes_on = before is not None and (
             before.group == block.group if block.group else before.kind is kind
-        ):
-            return ""
-        return f"{thing}: {_plain(block)}"
+        )
+        return "" if block.kind is not kind or goes_on else f"{thing}: {_plain(block)}"
 
     _go(reader, step, thing, said)
 
 
-def _plain(block: Block) -> str:
-    """Words of a block, without the bullet of an item."""
-    return block.words.removeprefix("• ")
-
-
-def _mark(reader: Reader, step: int, thing: str, *kinds: MarkKind) -> None:
+def _mark(reader: Reader, step: int, thing: str, kinds: tuple[MarkKind, ...]) -> None:
     """Go to a link, a note or a figure."""
     line, place = reader.line, reader.found_here
     if place is None:
@@ -96,7 +78,7 @@ def _mark(reader: Reader, step: int, thing: str, *kinds: MarkKind) -> None:
             if mark.kind in kinds and (block.start + mark.start - place) * step > 0:
                 reader.jump(block.start + mark.start, _mark_said(reader, block, mark))
                 return
-    _refuse(reader, step, thing)
+    reader.refuse_step(step, thing)
 
 
 def _mark_said(reader: Reader, block: Block, mark: Mark) -> str:
@@ -109,34 +91,27 @@ def _mark_said(reader: Reader, block: Block, mark: Mark) -> str:
     return f"link: {words}"
 
 
+both_ways(
+    "paragraph", "a ctrl-down A ctrl-up", "p ctrl-down P ctrl-up", "pins:NXPGRPH pins:PRPGRPH",
+    name="paragraph",
+)(partial(_go, thing="paragraph", said=_paragraph_said))  # fmt: skip
+both_ways("heading", "e E", "h H", name="heading", first=True)(
+    partial(_go, thing="heading", said=heading_said)
+)
 for level in range(1, 7):
-    command(f"next heading of level {level}", str(level), name=f"next-heading-{level}")(
-        partial(_level, level=level)
+    thing = f"heading of level {level}"
+    command(f"next {thing}", str(level), name=f"next-heading-{level}")(
+        partial(_go, step=1, thing=thing, said=partial(heading_said, level=level))
     )
-for thing, kind, keys, nvda in (
-    ("list", BlockKind.ITEM, "l L", ""),
-    ("table", BlockKind.ROW, "r R", "t T"),
-    ("quotation", BlockKind.QUOTE, "Q alt-q", "q Q"),
+for name, thing, keys, nvda, run in (
+    ("list", "list", "l L", "", partial(_group, kind=BlockKind.ITEM)),
+    ("table", "table", "r R", "t T", partial(_group, kind=BlockKind.ROW)),
+    ("quotation", "quotation", "Q alt-q", "q Q", partial(_group, kind=BlockKind.QUOTE)),
+    ("item", "item of a list", "I alt-i", "i I", partial(_go, said=_item_said)),
+    ("link", "link or note", "k K", "k tab K shift-tab", partial(_mark, kinds=_LINKS)),
+    ("figure", "figure or picture", ", ;", "g G", partial(_mark, kinds=(MarkKind.IMAGE,))),
 ):
-    both_ways(thing, keys, nvda, name=thing)(partial(_group, thing=thing, kind=kind))
-
-
-@both_ways("item of a list", "I alt-i", "i I")
-def item(reader: Reader, step: int) -> None:
-    def said(block: Block) -> str:
-        return f"item: {_plain(block)}" if block.kind is BlockKind.ITEM else ""
-
-    _go(reader, step, "item", said)
-
-
-@both_ways("link or note", "k K", "k tab K shift-tab")
-def link(reader: Reader, step: int) -> None:
-    _mark(reader, step, "link or note", *_LINKS)
-
-
-@both_ways("figure or picture", ", ;", "g G")
-def figure(reader: Reader, step: int) -> None:
-    _mark(reader, step, "figure or picture", MarkKind.IMAGE)
+    both_ways(thing, keys, nvda, name=name)(partial(run, thing=thing))
 
 
 @command("follow the link or note under the finger; from a note, go back", "enter")
@@ -199,7 +174,7 @@ def page(reader: Reader, step: int) -> None:
     at, above = divmod(reader.layout.number(reader.line) - 1, LINES_PER_PAGE)  # both from 0
     wanted = at + 1 if step > 0 else at - (not above)
     if not _go_to_braille_page(reader, wanted):
-        _refuse(reader, step, "page")
+        reader.refuse_step(step, "page")
 
 
 def has_pages(reader: Reader) -> bool:

@@ -203,7 +203,7 @@ class Tuning(Explored):
         """Read the next line, or the one before."""
         line = self.reader.beside(step)
         if line is None:
-            self.refuse("no next line" if step > 0 else "no previous line")
+            self.refuse_step(step, "line")
         else:
             self.reader.show(line)
 

@@ -43,8 +43,6 @@ def page_with_figures(
     lines: Sequence[NDArray[np.uint8]],
     style: BrailleStyle,
     figures: Sequence[FigureAt],
-    *,
-    start_mm: float = 0.0,
 ) -> tuple[Scene, Assets]:
     """Make one picture of a page of braille and the figures that stand on it.
 
@@ -61,8 +59,6 @@ def page_with_figures(
         Distances, profile and tuning of the dots.
     figures
         Figures with their places, one at least.
-    start_mm
-        Where the lines begin along x, 0 or less; what of them stands left of 0 is not felt.
 
     Returns
     -------
@@ -79,8 +75,8 @@ def page_with_figures(
         raise InputError("a page without cells has no figure in it; show the figure alone")
     geometry = style.geometry
     down_mm = geometry.line_pitch_mm / 2 - geometry.row_spacing_mm - geometry.dot_width_mm / 2
-    text = Label(id=PAGE, text=PAGE, place_mm=(start_mm, down_mm))
-    width_mm = start_mm + geometry.extent_mm(cells)
+    text = Label(id=PAGE, text=PAGE, place_mm=(0.0, down_mm))
+    width_mm = geometry.extent_mm(cells)
     height_mm = len(lines) * geometry.line_pitch_mm
     elements: tuple[AnyPattern, ...] = (text,)
     bitmaps: dict[Image, Bitmap] = {}
