@@ -284,7 +284,11 @@ class Reader(Surface):
         if followed.line:
             self._arrive()
         if followed.reached:
-            self.say("", self._end_cue())
+            following = self.beside(1)
+            last = following is None or following.block.page_number
+            if self.rows:
+                last = self.line is self.lines[-1]
+            self.say("", Cue.PAGE_END if last else Cue.LINE_END)
         tick, alone = ticks[-1], self.device.hand_done and not self.attended
         felt = int(tick["line"]) == self.number and not int(tick["flags"]) & HELD
         missed = alone and felt  # the end, between two ticks
@@ -299,13 +303,6 @@ class Reader(Surface):
             for sentence in self._watch.watch(ticks, reached=self.reached, patient=patient):
                 self.say(sentence)
             self.hopeless = self._watch.hopeless
-
-    def _end_cue(self) -> Cue:
-        following = self.beside(1)
-        if self.rows:
-            return Cue.PAGE_END if self.line is self.lines[-1] else Cue.LINE_END
-        last = following is None or following.block.page_number
-        return Cue.PAGE_END if last else Cue.LINE_END
 
     def go_on(self) -> None:
         """Give the next part of the line, or what follows; at the end, say so."""
