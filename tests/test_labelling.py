@@ -84,8 +84,8 @@ def test_labels_are_found_wherever_they_stand():
 @pytest.mark.parametrize(
     ("element", "why"),
     [
-        (label("x", table="enn.ctb"), r"there is no braille table 'enn\.ctb'"),
-        (label("x", table="xx"), "there is no table for language 'xx'"),
+        (label("x", table="enn.ctb"), r"unknown braille table 'enn\.ctb'"),
+        (label("x", table="xx"), "no braille table for language 'xx'"),
         (label("x", width_mm=2.0), "width is 2 mm; a cell takes 6.3 mm, so make it wider"),
         (label("\u200b"), "text holds nothing that braille can show"),
     ],

@@ -72,10 +72,10 @@ def test_each_table_item_and_key_has_its_line():
     [
         ("radius_mm = 1", "radius_mm = 0", "line 10: radius_mm"),
         ("radius_mm = 1", 'radius_mm = "1"', "line 10: radius_mm: must be a number"),
-        ("radius_mm = 1", "radius = 1", "line 10: radius: there is no such key; did you mean rad"),
+        ("radius_mm = 1", "radius = 1", "line 10: radius: unknown key; did you mean rad"),
         ("radius_mm = 1", "", "line 8: parts 1: radius_mm is missing"),
         ("radius_mm = 2", "radius_mm = nan", "line 14: radius_mm: is nan"),
-        ("radius_mm = 2", "length_mm = 2", "line 14: length_mm: there is no such key; known: kin"),
+        ("radius_mm = 2", "length_mm = 2", "line 14: length_mm: unknown key; known: kin"),
         ('"circle"', '"circel"', "kind: is 'circel'; did you mean circle?"),
         ("length_mm = 3", "length_mm = 300", "line 6: length is 300 mm"),
         ('title = "A"', 'title = "A\\u001b"', "line 1: title: has control characters"),

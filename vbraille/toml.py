@@ -249,7 +249,7 @@ def _explain(error: msgspec.ValidationError, kind: type, tree: Any) -> tuple[Pat
         return (
             *path,
             match[1],
-        ), f"there is no such key{which(match[1], _known_keys(kind, path, tree))}"
+        ), f"unknown key{which(match[1], _known_keys(kind, path, tree))}"
     if match := re.match(r"Object missing required field `(.*)`", message):
         return path, f"{match[1]} is missing"
     if match := re.match(r"Invalid (?:enum )?value (.*)", message):

@@ -202,7 +202,7 @@ def test_a_pdf_has_the_size_of_the_paper(scene, call, tmp_path):
         (("--out", "a.png", "--array", "2,15"), "the array is not on the canvas at 2,15"),
         (("--out", "a.png", "--array", "nan,15"), "--array"),
         (("--out", "a.png", "--array", "5"), "--array"),
-        (("--out", "a.png", "--outline", "--rulers"), "an outline is drawn by itself"),
+        (("--out", "a.png", "--outline", "--rulers"), "an outline is drawn alone"),
         (("--out", "a.csv", "--outline"), ".svg"),
         (("--out", "a.gif", "--frames", "2", "--rulers"), ".gif file has the map alone"),
         (("--out", "a.gif"), "--frames"),

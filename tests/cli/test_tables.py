@@ -34,7 +34,7 @@ def test_the_tables_of_a_language(call):
 def test_a_language_that_is_not_there_names_the_nearest(call):
     said = call("tables", "--language", "frr")
     assert (said.code, said.out) == (2, "")
-    assert said.err.startswith("vbraille: there is no table for language 'frr'; the nearest is fr ")
+    assert said.err.startswith("vbraille: no braille table for language 'frr'; the nearest is fr ")
 
 
 def test_tables_and_ports_are_printed_as_json(call):

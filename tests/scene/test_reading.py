@@ -94,12 +94,12 @@ REFUSED = {
     "no kind": (f"{CANVAS}[[elements]]\n", "line 4: elements 1: kind is missing"),
     "a misspelt key": (
         element("circle", "center_mm = [1, 2]", "radius = 3", "stroke = {}"),
-        "line 7: radius: there is no such key; did you mean radius_mm?",
+        "line 7: radius: unknown key; did you mean radius_mm?",
     ),
     "a key of another kind, within parts that several kinds have": (
         f"{CANVAS}{CIRCLE}"
         'fill.texture = {kind = "group", parts = [{kind = "linear-grating", angle_deg = 9}]}\n',
-        "line 8: angle_deg: there is no such key; did you mean wave_angle_deg?",
+        "line 8: angle_deg: unknown key; did you mean wave_angle_deg?",
     ),
     "nan": (
         f"{CANVAS}{CIRCLE}stroke.width_mm = nan\n",

@@ -128,7 +128,7 @@ def test_the_longest_gap_is_allowed_whatever_its_rounding(load):
         ("t_s,x_mm,t_s\n0,1,0\n", "two columns 't_s'"),
         ("0,1,2,3,4\n", "line 1"),
         ("0\n0.1\n", "does not name a column x_mm"),
-        ("t_s,x_mm,theta_rad\n0,1,2\n", "names a column 'theta_rad', which no hand has"),
+        ("t_s,x_mm,theta_rad\n0,1,2\n", "names a column 'theta_rad', which hands do not have"),
         ("t_s,x_mm,theta_deg\n0,1,\n0.1,1,2\n", "line 2: theta_deg is ''"),
         ("0,1,inf\n0.1,1,2\n", "line 1: y_mm is 'inf'; give a number from -10000 to 10000"),
         ("0,1,2,4e5\n0.1,1,2,3\n", "line 1: theta_deg is '4e5'"),

@@ -286,7 +286,7 @@ def test_texts_of_other_scripts_are_guessed_and_others_named():
     assert "is not UTF-8" in source.notes()[0]
     assert source.notes() == []
     assert opened("dzień".encode("cp1250"), encoding="cp1250").text == "dzień"
-    with pytest.raises(InputError, match="no text encoding"):
+    with pytest.raises(InputError, match="unknown text encoding"):
         opened("a", encoding="utf-99")
 
 

@@ -45,7 +45,7 @@ def test_a_tag_and_a_grade_lead_to_a_table(language, grade, table):
 def test_what_is_not_there_names_what_is():
     with pytest.raises(InputError, match="no grade 2 for language 'it'; there is"):
         find_table("it", 2)
-    with pytest.raises(InputError, match="no table for language 'tlh'"):
+    with pytest.raises(InputError, match="no braille table for language 'tlh'"):
         find_table("tlh")
     assert has_tables("fr")
     assert not has_tables("tlh")

@@ -154,5 +154,5 @@ def test_a_fork_has_a_child_of_its_own():
 
 @pytest.mark.parametrize("name", ["en-ueb-g3.ctb", "", "a\0b", "x" * 2_000, "/etc/passwd"])
 def test_a_table_that_is_none_is_refused(name):
-    with pytest.raises(InputError, match="no braille table"):
+    with pytest.raises(InputError, match="unknown braille table"):
         BrailleTable(name)

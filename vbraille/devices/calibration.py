@@ -115,7 +115,7 @@ def load(settings: Path, device: _Device) -> Calibration | None:
         rows, columns = device.display.shape
         raise InputError(
             f"{path} has {len(found.gain)} × {len(found.gain[0])} gains and {name} has "
-            f"{rows} × {columns} actuators; move it away, and calibrate anew"
+            f"{rows} × {columns} actuators; move it away, and calibrate again"
         )
     return found
 

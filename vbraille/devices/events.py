@@ -170,7 +170,7 @@ class Exposed(Event, frozen=True):
 
     limit_s: float
     says = (
-        "picture: it has moved by itself for {limit_s:g} s, and rests, which spares the skin; "
+        "picture: it moved by itself for {limit_s:g} s, and rests, which spares the skin; "
         "pause and go on to begin it anew"
     )
 

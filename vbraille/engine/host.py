@@ -169,7 +169,9 @@ class Host(Watcher):
                 raise self._ended_by()
         if first not in (None, self._display):
             self.close()
-            raise InputError(f"{self.display.name} is another device than before; start anew")
+            raise InputError(
+                f"{self.display.name} is not the device that was there before; start again"
+            )
         self._ticked_s = time.monotonic()
         if self._shown is not None:
             self.switches = self._switches

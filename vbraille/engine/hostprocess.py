@@ -240,7 +240,7 @@ def main() -> int:
         else:
             print_traceback(error)
             what = f"{type(error).__name__}: {error}"
-            said = f"a fault of vbraille's own, which its authors want to hear of: {what}"
+            said = f"internal error, please report it: {what}"
         parent.say(fault=said[:_MOST_SAID], code=code)
         return code
     return 0

@@ -136,10 +136,10 @@ class LiveView:
         Raises
         ------
         InputError
-            If there is no hand that a page could be.
+            If a real hand moves the device.
         """
         if isinstance(request, Point | LetGo) and not self._state.simulated:
-            raise InputError("a real hand moves this device; there is none that a page could be")
+            raise InputError("a real hand moves this device; a page cannot move it")
         self._asked.append(request)
 
 

@@ -83,7 +83,7 @@ class MapRequest:
     def __post_init__(self) -> None:
         over = bool(self.array) or self.rulers
         if self.outline and (over or self.frames or self.kind in ("csv", "gif")):
-            raise InputError("an outline is drawn by itself, as .svg, .pdf or .png")
+            raise InputError("an outline is drawn alone, as .svg, .pdf or .png")
         if self.kind in ("csv", "gif") and over:
             raise InputError(f"a .{self.kind} file has the map alone; choose .png, .svg or .pdf")
         if self.kind == "gif" and not self.frames:

@@ -450,11 +450,11 @@ class Reader(Surface):
                 return
             self.lay_out(book, nearest(book.source, words, place), under=False)
         except InputError as error:
-            self.refuse(f"the file has changed and is not read anew: {error}")
+            self.refuse(f"the file has changed and cannot be read again: {error}")
             return
         self.back = []
         before.close()
-        self.say(f"the file has changed; it is read anew, {self.named()}")
+        self.say(f"the file has changed; read again, {self.named()}")
 
 
 def letter_said(text: str) -> str:

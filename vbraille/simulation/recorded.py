@@ -77,7 +77,7 @@ def load_recorded(path: Path | str) -> Recorded:
     for name in sheet.columns:
         if name not in COLUMNS:
             raise InputError(
-                f"{path} names a column {name!r}, which no hand has{nearest(name, COLUMNS)}; "
+                f"{path} names a column {name!r}, which hands do not have{nearest(name, COLUMNS)}; "
                 f"there are {', '.join(COLUMNS)}"
             )
     for name in _NEEDED:

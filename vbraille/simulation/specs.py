@@ -60,7 +60,7 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
     except ValueError as error:
         raise InputError(str(error)) from None
     raise InputError(
-        f"there is no hand {spec!r}; give sweep:SPEED in mm/s, slow, fluent or recorded:FILE, "
+        f"unknown hand {spec!r}; give sweep:SPEED in mm/s, slow, fluent or recorded:FILE, "
         f"or wide or spot:X,Y to go over a picture"
     )
 

@@ -67,7 +67,7 @@ def decode(content: bytes, encoding: str | None = None) -> tuple[str, str]:
             text = content.decode(encoding, "replace")
         except (LookupError, ValueError):
             raise InputError(
-                f"there is no text encoding {encoding!r}; give one such as utf-8 or cp1252"
+                f"unknown text encoding {encoding!r}; give one such as utf-8 or cp1252"
             ) from None
         return text.removeprefix("\ufeff"), ""
     for mark, name in _MARKS:

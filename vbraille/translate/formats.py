@@ -108,7 +108,7 @@ def open_source(
     try:
         found = find_format(stream, name) if form is None else form.lower()
         if found not in _FORMATS:
-            raise InputError(f"there is no form of books {form!r}{nearest(found, FORMATS)}")
+            raise InputError(f"unknown file format {form!r}{nearest(found, FORMATS)}")
         given = {"encoding": encoding, "brf_table": brf_table, "keep_lines": keep_lines or None}
         options = _fitting(found, name, given, wishes)
         stream.seek(0)

@@ -99,7 +99,7 @@ def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
         tag = tag.rpartition("-")[0]
     tags = sorted({table.language for table in list_tables() if table.language})
     raise InputError(
-        f"there is no table for language {language!r}{nearest(wanted, tags, 3)} "
+        f"no braille table for language {language!r}{nearest(wanted, tags, 3)} "
         f"(vbraille tables lists all)"
     )
 

@@ -81,13 +81,13 @@ class Louis:
             If liblouis does not come to an end, or crashes.
         """
         if "\0" in table or not 0 < len(table) <= _LONGEST_NAME:
-            raise InputError(f"there is no braille table {table!r:.40}")
+            raise InputError(f"unknown braille table {table!r:.40}")
         try:
             cells, places = self.ask("translate", table, _UNDEFINED, text, forms)
         except RuntimeError:
             names = [each["name"] for each in list_tables()]
             raise InputError(
-                f"there is no braille table {table!r} that liblouis can use"
+                f"unknown braille table {table!r}"
                 f"{nearest(table, names, 3)} (vbraille tables lists all)"
             ) from None
         undefined = [number for number, cell in enumerate(cells) if cell == _UNDEFINED_CELL]

@@ -41,7 +41,9 @@ def read_rtf(source: Source) -> Iterator[Block]:
     try:
         text = rtf_to_text(content.decode("cp1252", "replace"), errors="replace")
     except (ValueError, LookupError, IndexError, RecursionError):
-        raise InputError(f"{source.name} is a damaged RTF file; save it anew, or as DOCX") from None
+        raise InputError(
+            f"{source.name} is a damaged RTF file; save it again, or as DOCX"
+        ) from None
     why = "LibreOffice cannot read it" if office else "LibreOffice (soffice) is not installed"
     source.note(f"{source.name} is read as plain text, without headings and notes, for {why}")
     # Lone surrogates are halves of what RTF writes in two.

@@ -74,7 +74,7 @@ if TYPE_CHECKING:
     from vbraille.display import Display
 
 _MS: Final = 1_000_000
-_U16, _U32 = 0xFFFF, 0xFFFF_FFFF
+_U16: Final = 0xFFFF
 DISPLAY: Final = replace(LATERO.under(LATERO_ARRAY), name="Latero", shown_near=True)
 # Frames must come more often than the watchdog takes the client for dead.
 LOWEST_RATE_HZ: Final = 40.0
@@ -94,14 +94,11 @@ _PACE: Final = 2
 # The array's centre may be so far outside what it can reach, by the play of the arms.
 BEYOND_MM: Final = 10.0
 _MOST_ANSWERS: Final = 256  # that are taken at a time: those of a stopped client wait
-_START_S: Final = 10.0  # that the watchdog may take, on a machine with a lot to do
-_END_S: Final = 2.0  # and to bring blades to rest, or after a client that was killed
+_END_S: Final = 2.0  # that the watchdog may take to bring blades to rest
 
 # Notices, each by its code.
 POWER_OFF, PLACE, ENCODERS = 1, 2, 3
-NO_SWITCH: Final = (
-    "how its motor power is switched is not known, so that it stays on; give power=ADDRESS"
-)
+NO_SWITCH: Final = "how to switch its motor power is unknown, and it stays on; give power=ADDRESS"
 WHERE: Final = (
     "the near left corner of a Latero is the lower left one, with its third arm straight up: from "
     "the array it goes straight away from you"
@@ -173,7 +170,9 @@ def parse_latero_address(text: str) -> LateroAddress:
     return LateroAddress(
         host,
         _whole(port) if colon else PORT,
-        None if offsets is None else tuple(int(count) & _U32 for count in offsets.split(",")),
+        None
+        if offsets is None
+        else tuple(int(count) & 0xFFFF_FFFF for count in offsets.split(",")),
         None if power == "none" else _whole(power or "0"),
         power is not None,
     )
@@ -230,7 +229,8 @@ class WatchdogProcess:
         os.close(lifeline)
         assert self._process.stdout is not None
         with self._process.stdout as said:
-            ready, _, _ = select.select([said], (), (), _START_S)
+            # A machine may have a lot to do.
+            ready, _, _ = select.select([said], (), (), 10.0)
             if not (ready and os.read(said.fileno(), 1)):
                 self._process.kill()
                 self.close()
@@ -451,7 +451,7 @@ class LateroDevice(Device):
             f"{status >> 8 & 0xF}.{status >> 4 & 0xF}"
             for status in (self.answer.controller, self.answer.interface)
         )
-        where = "its offsets are not known before it is shown its lower left corner"
+        where = "its offsets are unknown until it is shown its lower left corner"
         if self._offsets is not None:
             where = f"offsets={','.join(map(str, self._offsets))}"
         return Particulars(

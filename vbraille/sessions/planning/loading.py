@@ -47,7 +47,7 @@ def load_protocol(name: str) -> Protocol:
         files = {OWN_FILE: path.read_bytes()}
     except OSError as error:
         if path.parent == FOLDER:
-            said = f"there is no protocol {name!r}{which(name, shipped())}"
+            said = f"unknown protocol {name!r}{which(name, shipped())}"
             raise InputError(f"{said}; that of a file ends in .toml") from None
         raise InputError(f"{name}: {error.strerror}") from None
     text, tables = _tables(files, name)

@@ -126,7 +126,7 @@ def _choose_group(protocol: Protocol, participant: str, group: str | None) -> st
     """Return the name of the group; empty if there are none."""
     groups = protocol.groups
     if group and group not in groups:
-        raise InputError(f"there is no group {group!r}{which(group, groups)}")
+        raise InputError(f"unknown group {group!r}{which(group, groups)}")
     if group or not groups:
         return group or ""
     if participant in protocol.orders:
