@@ -53,32 +53,39 @@ class Aperture:
         """Zoom about a place of the carriage, which stays on the same place of the picture."""
         share = zoom / self.zoom
         x_mm, y_mm = at_mm
-        left_mm = share * (x_mm + self.left_mm) - x_mm
-        top_mm = share * (y_mm + self.top_mm) - y_mm if self.reach_mm[1] else 0.0
-        return replace(self, zoom=zoom, left_mm=left_mm, top_mm=top_mm)
+        left_mm, top_mm = share * (x_mm + self.left_mm) - x_mm, share * (y_mm + self.top_mm) - y_mm
+        return replace(self, zoom=zoom)._from(left_mm, top_mm)
 
     def panned(self, right: float, down: float, canvas: Canvas) -> Aperture:
         """Move by shares of the reach, as far as there is canvas."""
-        size = canvas.width_mm, canvas.height_mm
-        places = (self.left_mm, self.top_mm)
-        moves = (right, down)
-        moved = [
-            _moved(place, share * reach, reach, of)
-            for place, share, reach, of in zip(places, moves, self.reach_mm, size, strict=True)
-        ]
-        return replace(self, left_mm=moved[0], top_mm=moved[1] if self.reach_mm[1] else 0.0)
+
+        def moved(place_mm: float, share: float, reach_mm: float, size_mm: float) -> float:
+            # Not beyond the canvas, or where all of that is within the window, not off it.
+            ends = 0.0, size_mm - reach_mm, place_mm
+            return min(max(place_mm + share * reach_mm, min(ends)), max(ends))
+
+        return self._from(
+            moved(self.left_mm, right, self.reach_mm[0], canvas.width_mm),
+            moved(self.top_mm, down, self.reach_mm[1], canvas.height_mm),
+        )
 
     def reaching(self, x_mm: float, y_mm: float) -> Aperture:
         """Move no farther than is needed to have a place of the canvas well within reach."""
-        brought = [
-            place
-            if 0.0 <= at - place <= reach
-            else at - min(max(at - place, _MARGIN * reach), (1.0 - _MARGIN) * reach)
-            for place, at, reach in zip(
-                (self.left_mm, self.top_mm), (x_mm, y_mm), self.reach_mm, strict=True
-            )
-        ]
-        return replace(self, left_mm=brought[0], top_mm=brought[1] if self.reach_mm[1] else 0.0)
+
+        def brought(place_mm: float, at_mm: float, reach_mm: float) -> float:
+            away_mm = at_mm - place_mm
+            if 0.0 <= away_mm <= reach_mm:
+                return place_mm
+            return at_mm - min(max(away_mm, _MARGIN * reach_mm), (1.0 - _MARGIN) * reach_mm)
+
+        return self._from(
+            brought(self.left_mm, x_mm, self.reach_mm[0]),
+            brought(self.top_mm, y_mm, self.reach_mm[1]),
+        )
+
+    def _from(self, left_mm: float, top_mm: float) -> Aperture:
+        """Move the window to a place of the canvas; along y only if the carriage goes there."""
+        return replace(self, left_mm=left_mm, top_mm=top_mm if self.reach_mm[1] else 0.0)
 
     def words(self, canvas: Canvas) -> str:
         """Words for what is within reach, in mm of the picture as it is written."""
@@ -105,10 +112,3 @@ class Aperture:
         """Words for the size of a box on the canvas."""
         width, height = (box.right - box.left) / self.zoom, (box.bottom - box.top) / self.zoom
         return f"{width:.0f} mm × {height:.0f} mm"
-
-
-def _moved(place_mm: float, by_mm: float, reach_mm: float, size_mm: float) -> float:
-    """Move a window, not beyond the canvas, or where all of that is within it, not off it."""
-    ends = 0.0, size_mm - reach_mm
-    low, high = min(*ends, place_mm), max(*ends, place_mm)
-    return min(max(place_mm + by_mm, low), high)

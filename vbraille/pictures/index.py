@@ -205,12 +205,6 @@ class SceneIndex:
                     return element
         return None
 
-    def opacity(self, number: int, x_mm: float, y_mm: float) -> float:
-        """Tell how much of what lies below a part, by its number, it hides at a place: 0 … 1."""
-        at = np.array([x_mm]), np.array([y_mm])
-        shown = self._leaf_map(number).deflections(*at, is_mask=True, switches=self.switches)
-        return float(shown[0, 0])
-
     def _alone(self, pattern: AnyPattern) -> SceneMap:
         alone = replace(self._scene, elements=(pattern,), operation="overwrite")
         return SceneMap(alone, self._assets)
@@ -248,9 +242,11 @@ class SceneIndex:
         """Uppermost part that is felt at a place."""
         if not self._canvas.holds(x_mm, y_mm):
             return None
+        place = np.array([x_mm]), np.array([y_mm])
         found, most = None, _TRACE
         for at in self._covering(x_mm, y_mm):
-            share = self.opacity(at, x_mm, y_mm)
+            hides = self._leaf_map(at).deflections(*place, is_mask=True, switches=self.switches)
+            share = float(hides[0, 0])
             if share >= _FELT:
                 return self._leaves[at]
             if share > most:
