@@ -83,13 +83,13 @@ def test_pages_of_any_length_have_a_bounded_size(lines):
 
 
 def written(figure, kind):
-    return to_bytes(figure, kind, {"Title": "a title"})
+    return to_bytes(figure, kind, "a title")
 
 
 @pytest.mark.no_cover
 @KINDS
 def test_svg_parses_and_its_text_stays_text(table):
-    content = to_bytes(drawn(table), "svg", {"Title": table.title}).decode()
+    content = to_bytes(drawn(table), "svg", table.title).decode()
     assert ET.fromstring(content).tag == "{http://www.w3.org/2000/svg}svg"
     assert content.count(table.title) >= 2  # as text and as the file's title
 

@@ -13,11 +13,11 @@ from vbraille.errors import InputError
 from vbraille.pictures.drawings import (
     ArrayOnMap,
     check_on_canvas,
-    drawing_bytes,
     felt_contours,
     map_figure,
     outline_figure,
 )
+from vbraille.pictures.figurefiles import to_bytes
 from vbraille.pictures.scenes import map_deflections
 from vbraille.render import LATERO, STRESS2_8X8, VBD
 from vbraille.render.labels import Assets
@@ -62,7 +62,7 @@ def test_an_array_beyond_the_canvas_is_refused():
 
 def ink(figure, per_mm):
     """Where a drawing is black; bool[rows, columns]."""
-    with Image.open(io.BytesIO(drawing_bytes(figure, "png", per_mm, "t", "d"))) as image:
+    with Image.open(io.BytesIO(to_bytes(figure, "png", "t", "d", 25.4 * per_mm))) as image:
         return np.asarray(image.convert("L")) < 128
 
 
@@ -127,7 +127,7 @@ def test_a_scene_of_which_nothing_is_felt_is_blank():
 
 def test_a_drawing_in_svg_has_words_and_the_size_of_the_canvas():
     figure = outline_figure(Scene(canvas=CANVAS, elements=DRAWN), Assets())
-    root = etree.fromstring(drawing_bytes(figure, "svg", 1.0, "A <b> & c", "One, two"))
+    root = etree.fromstring(to_bytes(figure, "svg", "A <b> & c", "One, two"))
     size = [float(root.get(name).removesuffix("pt")) / 72 * 25.4 for name in ("width", "height")]
     assert size == pytest.approx([60, 50], abs=0.01)
     assert root.get("role") == "img"

@@ -1,12 +1,14 @@
 """Signals against the velocity of the hand: values are those of the equations, in words too."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from tests.render.scene.twinsignals import Signals
 from vbraille.errors import InputError
 from vbraille.pictures.loading import with_assets
-from vbraille.pictures.maps import MapRequest, draw_signal
+from vbraille.pictures.maps import MapRequest, draw_map
 from vbraille.render import STRESS2_8X8
 from vbraille.scene.converting import write_scene
 from vbraille.scene.reading import open_scene
@@ -33,9 +35,9 @@ def loaded(tmp_path):
 
 def drawn(loaded, name, states=None):
     """Velocities and values of a signal, and what is said of it."""
-    request = MapRequest("csv", STRESS2_8X8, switches=states or {})
-    content, said = draw_signal(loaded, name, request)
-    header, *rows = content.decode().splitlines()
+    request = MapRequest("csv", STRESS2_8X8, switches=states or {}, signal=name)
+    [(_, content)], (_, *said) = draw_map(loaded, request, Path("a.csv"))
+    header, *rows = b"".join(content).decode().splitlines()
     assert header == "x_mm_s,y_mm_s,value"
     return np.array([row.split(",") for row in rows], float), said
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING, NamedTuple
-from xml.sax.saxutils import escape
 
 import numpy as np
 from matplotlib.collections import PolyCollection
@@ -13,9 +12,8 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
 from vbraille.errors import InputError
-from vbraille.pictures.figurefiles import styled, to_bytes
-from vbraille.pictures.scenes import grays, map_places
-from vbraille.pictures.words import plain
+from vbraille.pictures.figurefiles import styled
+from vbraille.pictures.scenes import MM_PER_INCH, grays, map_places
 from vbraille.scene.traversal import vibrations
 from vbraille.wording import setting
 
@@ -27,7 +25,6 @@ if TYPE_CHECKING:
     from vbraille.render.labels import Assets
     from vbraille.scene.scene import Canvas, Scene
 
-MM_PER_INCH = 25.4
 # Margins of a picture with rulers, in mm: left, right, above and below.
 _MARGINS_MM = 11.0, 3.0, 2.0, 9.0
 _BAR_SHARES = 0.3, 0.7  # of the pitches, where the size of contactors is not known
@@ -223,36 +220,6 @@ def felt_contours(scene: Scene, assets: Assets) -> list[NDArray[np.float64]]:
     lines = contour_generator(x, y, rimmed).lines(0.51 * strongest)
     edge = canvas.width_mm, canvas.height_mm
     return [np.clip(np.asarray(line), 0.0, edge) for line in lines]
-
-
-def drawing_bytes(
-    figure: Figure, kind: str, pixels_per_mm: float, title: str, description: str
-) -> bytes:
-    """Make the file of a drawing, with its title and description in it.
-
-    Parameters
-    ----------
-    figure
-        The drawing.
-    kind
-        Kind of the file: png, svg or pdf.
-    pixels_per_mm
-        Resolution of a PNG.
-    title, description
-        What it shows, in a word and in sentences; in an SVG screen readers say them.
-    """
-    title, description = plain(title), plain(description)
-    about = "Subject" if kind == "pdf" else "Description"
-    told = {key: text for key, text in (("Title", title), (about, description)) if text.strip()}
-    content = to_bytes(figure, kind, told, pixels_per_mm * MM_PER_INCH)
-    if kind != "svg":
-        return content
-    words = (
-        f' role="img" aria-labelledby="title description">\n <title id="title">{escape(title)}'
-        f'</title>\n <desc id="description">{escape(description)}</desc>'
-    )
-    end = content.index(b">", content.index(b"<svg "))
-    return content[:end] + words.encode() + content[end + 1 :]
 
 
 def _sheet(canvas: Canvas, margins_mm: tuple[float, float, float, float]) -> tuple[Figure, Axes]:

@@ -6,11 +6,14 @@ import io
 import warnings
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
+from xml.sax.saxutils import escape
 
 from matplotlib import style
 
+from vbraille.pictures.words import plain
+
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
     from matplotlib.figure import Figure
 
@@ -47,8 +50,10 @@ def styled() -> Iterator[None]:
         yield
 
 
-def to_bytes(figure: Figure, kind: str, told: Mapping[str, str], dpi: float = 150) -> bytes:
-    """Make the content of a figure's file.
+def to_bytes(
+    figure: Figure, kind: str, title: str, description: str = "", dpi: float = 150
+) -> bytes:
+    """Make the content of a figure's file, with its title and description in it.
 
     Parameters
     ----------
@@ -56,12 +61,23 @@ def to_bytes(figure: Figure, kind: str, told: Mapping[str, str], dpi: float = 15
         The figure.
     kind
         Kind of the file: png, svg or pdf.
-    told
-        Words of the file on itself, by the keywords of its kind.
+    title, description
+        What it shows, in a word and in sentences; in an SVG screen readers say them.
     dpi
         Resolution of a PNG, in dots per inch.
     """
-    content = io.BytesIO()
+    title, description = plain(title), plain(description)
+    about = "Subject" if kind == "pdf" else "Description"
+    told = {key: text for key, text in (("Title", title), (about, description)) if text.strip()}
+    file = io.BytesIO()
     with styled():
-        figure.savefig(content, format=kind, dpi=dpi, metadata={**told, **_METADATA[kind]})
-    return content.getvalue()
+        figure.savefig(file, format=kind, dpi=dpi, metadata={**told, **_METADATA[kind]})
+    content = file.getvalue()
+    if kind != "svg":
+        return content
+    words = (
+        f' role="img" aria-labelledby="title description">\n <title id="title">{escape(title)}'
+        f'</title>\n <desc id="description">{escape(description)}</desc>'
+    )
+    end = content.index(b">", content.index(b"<svg "))
+    return content[:end] + words.encode() + content[end + 1 :]

@@ -35,9 +35,7 @@ _MOST_TRIED: Final = 60  # of the places where it is felt, for one that nothing 
 _MOST_NEAR: Final = 3  # elements whose boxes are near, of which the nearest is found
 _EDGE_MM: Final = 1.0  # so near to an outline without a stroke is its edge
 _ARC: Final = np.linspace(0.0, math.tau, 181)
-
-
-_EVERYWHERE: Final = (-math.inf, -math.inf, math.inf, math.inf)
+_EVERYWHERE: Final = Box(-math.inf, -math.inf, math.inf, math.inf)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,7 +87,7 @@ def label_of(pattern: AnyPattern) -> str:
 class _Leaf(NamedTuple):
     pattern: AnyPattern
     element: NamedElement
-    box: Box | None
+    box: Box
 
 
 class SceneIndex:
@@ -128,8 +126,7 @@ class SceneIndex:
         self._canvas = Box(0.0, 0.0, scene.canvas.width_mm, scene.canvas.height_mm)
         self.elements: list[NamedElement] = []
         self._leaves = [leaf for one in scene.elements for leaf in self._leaves_of(one, None)]
-        boxes = [leaf.box or _EVERYWHERE for leaf in self._leaves]
-        self._edges = np.array(boxes, float).reshape(-1, 4).T
+        self._edges = np.array([leaf.box for leaf in self._leaves], float).reshape(-1, 4).T
 
     def here(self, x_mm: float, y_mm: float) -> NamedElement | None:
         """Find the uppermost element with a name at a place in mm; None if there is none."""
@@ -145,22 +142,17 @@ class SceneIndex:
         if leaf is not None:
             stroke = leaf.pattern.stroke if isinstance(leaf.pattern, Shape) else None
             half_mm = _EDGE_MM if stroke is None else stroke.width_mm / 2
-            near = any(distance_mm(one, x_mm, y_mm) <= half_mm for one in outlines(leaf.pattern))
-            return Spot(leaf.element, "edge" if near else "on")
-        around = [
-            leaf
-            for leaf in map(self._leaves.__getitem__, self._covering(x_mm, y_mm))
-            if _is_within(leaf.pattern, x_mm, y_mm)
-        ]
-        smallest = min(around, key=lambda leaf: _area(leaf.box), default=None)
-        return None if smallest is None else Spot(smallest.element, "inside")
+            is_near = _distance_mm(leaf.pattern, x_mm, y_mm) <= half_mm
+            return Spot(leaf.element, "edge" if is_near else "on")
+        around = self._around(x_mm, y_mm)
+        if not around:
+            return None
+        smallest = min(around, key=lambda leaf: math.prod(np.subtract(leaf.box[2:], leaf.box[:2])))
+        return Spot(smallest.element, "inside")
 
     def encloses(self, element: NamedElement, x_mm: float, y_mm: float) -> bool:
         """Tell whether an outline of an element is around a place in mm."""
-        return any(
-            leaf.element is element and _is_within(leaf.pattern, x_mm, y_mm)
-            for leaf in map(self._leaves.__getitem__, self._covering(x_mm, y_mm))
-        )
+        return any(leaf.element is element for leaf in self._around(x_mm, y_mm))
 
     def point_on(self, element: NamedElement) -> tuple[float, float]:
         """Find a place in mm where an element is felt, as near to its middle as there is one.
@@ -169,27 +161,27 @@ class SceneIndex:
         """
         box = element.box
         middle = (box.left + box.right) / 2, (box.top + box.bottom) / 2
-        if self.here(*middle) is element:
-            return middle
         nearest = _sorted_from(middle, self._points(element, self.switches))
-        if not nearest:
-            return middle
-        tried = nearest[:: max(1, len(nearest) // _MOST_TRIED)]
-        return next((point for point in tried if self.here(*point) is element), nearest[0])
+        tried = [middle, *nearest[:: max(1, len(nearest) // _MOST_TRIED)]]
+        shown = (point for point in tried if self.here(*point) is element)
+        return next(shown, (nearest or tried)[0])
 
     def nearest(self, x_mm: float, y_mm: float) -> tuple[NamedElement, tuple[float, float]] | None:
         """Find the element that is felt nearest to a place, and where; both in mm."""
         here = x_mm, y_mm
-        found = []
-        boxes = [(_to_box(element.box, *here), n) for n, element in enumerate(self.elements)]
-        for away_mm, number in sorted(boxes)[:_MOST_NEAR]:
-            points = _sorted_from(here, self._points(self.elements[number], self.switches))
-            if points and math.isfinite(away_mm):
-                found.append((math.dist(points[0], here), number, points[0]))
-        if not found:
-            return None
-        _, number, point = min(found)
-        return self.elements[number], point
+
+        def to_box(element: NamedElement) -> float:
+            left, top, right, bottom = element.box
+            return math.hypot(
+                max(left - x_mm, x_mm - right, 0.0), max(top - y_mm, y_mm - bottom, 0.0)
+            )
+
+        found = [
+            (element, points[0])
+            for element in sorted(self.elements, key=to_box)[:_MOST_NEAR]
+            if (points := _sorted_from(here, self._points(element, self.switches)))
+        ]
+        return min(found, key=lambda one: math.dist(one[1], here), default=None)
 
     def inside(self) -> tuple[float, float]:
         """Find a place in mm where the picture is felt, as near to its middle as there is one."""
@@ -216,9 +208,8 @@ class SceneIndex:
     def opacity(self, number: int, x_mm: float, y_mm: float) -> float:
         """Tell how much of what lies below a part, by its number, it hides at a place: 0 … 1."""
         at = np.array([x_mm]), np.array([y_mm])
-        return float(
-            self._leaf_map(number).deflections(*at, is_mask=True, switches=self.switches)[0, 0]
-        )
+        shown = self._leaf_map(number).deflections(*at, is_mask=True, switches=self.switches)
+        return float(shown[0, 0])
 
     def _alone(self, pattern: AnyPattern) -> SceneMap:
         alone = replace(self._scene, elements=(pattern,), operation="overwrite")
@@ -248,6 +239,11 @@ class SceneIndex:
         there = (left <= x_mm) & (x_mm <= right) & (top <= y_mm) & (y_mm <= bottom)
         return np.flatnonzero(there)[: -1 - _MOST_LOOKED_AT : -1].tolist()
 
+    def _around(self, x_mm: float, y_mm: float) -> list[_Leaf]:
+        """Parts that have an outline around a place."""
+        covering = [self._leaves[at] for at in self._covering(x_mm, y_mm)]
+        return [leaf for leaf in covering if _is_within(leaf.pattern, x_mm, y_mm)]
+
     def _leaf_at(self, x_mm: float, y_mm: float) -> _Leaf | None:
         """Uppermost part that is felt at a place."""
         if not self._canvas.holds(x_mm, y_mm):
@@ -264,10 +260,9 @@ class SceneIndex:
     def _leaves_of(self, pattern: AnyPattern, above: NamedElement | None) -> Iterator[_Leaf]:
         """Patterns within one that are no groups, with the elements by whose names they go."""
         name = label_of(pattern)
-        box = bounds(pattern, self._known)
+        box = bounds(pattern, self._known) or _EVERYWHERE
         if name or ((pattern.description or pattern.sound) and above is None):
-            covered = self._canvas if box is None else box.common(self._canvas)
-            above = NamedElement(name or "without a title", pattern, covered)
+            above = NamedElement(name or "without a title", pattern, box.common(self._canvas))
             self.elements.append(above)
         # What a group inverts, or shows by a mask, is asked of the group as a whole.
         if isinstance(pattern, Group) and is_open(pattern):
@@ -275,6 +270,11 @@ class SceneIndex:
                 yield from self._leaves_of(part, above)
         elif above is not None:
             yield _Leaf(pattern, above, box)
+
+
+def is_open(group: Group) -> bool:
+    """Tell whether the parts of a group are felt where they are, each by itself."""
+    return group.operation in ("overwrite", "maximum", "add") and not group.inverted
 
 
 def _sorted_from(
@@ -285,16 +285,7 @@ def _sorted_from(
     return [(x, y) for x, y in points[order].tolist()]
 
 
-def _area(box: Box | None) -> float:
-    return math.inf if box is None else (box.right - box.left) * (box.bottom - box.top)
-
-
-def is_open(group: Group) -> bool:
-    """Tell whether the parts of a group are felt where they are, each by itself."""
-    return group.operation in ("overwrite", "maximum", "add") and not group.inverted
-
-
-def outlines(pattern: AnyPattern) -> list[NDArray[np.floating]]:
+def _outlines(pattern: AnyPattern) -> list[NDArray[np.floating]]:
     """Closed outlines of a shape, each float64[n, 2] with its first corner again at its end."""
     if isinstance(pattern, Circle):
         around = np.stack((np.cos(_ARC), np.sin(_ARC)), axis=1)
@@ -306,30 +297,24 @@ def outlines(pattern: AnyPattern) -> list[NDArray[np.floating]]:
     return []
 
 
-def distance_mm(outline: NDArray[np.floating], x_mm: float, y_mm: float) -> float:
-    """Distance of a place from an outline, in mm."""
-    begin, along = outline[:-1], np.diff(outline, axis=0)
-    to = np.array((x_mm, y_mm)) - begin
-    length = np.maximum((along * along).sum(axis=1), 1e-12)
-    share = np.clip((to * along).sum(axis=1) / length, 0.0, 1.0)
-    return float(np.hypot(*(to - share[:, None] * along).T).min())
+def _distance_mm(pattern: AnyPattern, x_mm: float, y_mm: float) -> float:
+    """Distance of a place from the outlines of a shape, in mm; infinite without one."""
+    nearest = math.inf
+    for outline in _outlines(pattern):
+        along = np.diff(outline, axis=0)
+        to = (x_mm, y_mm) - outline[:-1]
+        length = np.maximum((along * along).sum(axis=1), 1e-12)
+        share = np.clip((to * along).sum(axis=1) / length, 0.0, 1.0)
+        nearest = min(nearest, float(np.hypot(*(to - share[:, None] * along).T).min()))
+    return nearest
 
 
 def _is_within(pattern: AnyPattern, x_mm: float, y_mm: float) -> bool:
     """Tell whether a place is inside of the outlines of a shape, by the even-odd rule."""
     crossed = 0
-    for outline in outlines(pattern):
+    for outline in _outlines(pattern):
         (x, y), (x_next, y_next) = outline[:-1].T, outline[1:].T
         passes = (y > y_mm) != (y_next > y_mm)
         at = x[passes] + (y_mm - y[passes]) * (x_next - x)[passes] / (y_next - y)[passes]
         crossed += int((at > x_mm).sum())
     return crossed % 2 == 1
-
-
-def _to_box(box: Box, x_mm: float, y_mm: float) -> float:
-    """Distance of a place from a box, in mm; infinite for an empty one."""
-    if box.is_empty:
-        return math.inf
-    return math.hypot(
-        max(box.left - x_mm, x_mm - box.right, 0.0), max(box.top - y_mm, y_mm - box.bottom, 0.0)
-    )

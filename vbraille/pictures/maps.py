@@ -67,6 +67,8 @@ class MapRequest:
         Whether rulers in mm stand around the map.
     outline
         Whether what is felt is drawn in black on white, instead of a map.
+    signal
+        Name of the signal whose answer to the hand's velocity is drawn, instead of a map.
     """
 
     kind: str
@@ -79,6 +81,7 @@ class MapRequest:
     array: tuple[float, ...] = ()
     rulers: bool = False
     outline: bool = False
+    signal: str = ""
 
     def __post_init__(self) -> None:
         over = bool(self.array) or self.rulers
@@ -86,6 +89,8 @@ class MapRequest:
             raise InputError("an outline is drawn alone, as .svg, .pdf or .png")
         if self.kind in ("csv", "gif") and over:
             raise InputError(f"a .{self.kind} file has the map alone; choose .png, .svg or .pdf")
+        if self.signal and self.kind == "gif":
+            raise InputError("a signal is drawn as .png, .svg, .pdf or .csv")
         if self.kind == "gif" and not self.frames:
             raise InputError(f"a .gif file is an animation; add {setting('frames')}")
 
@@ -113,7 +118,7 @@ def kind_of(path: Path) -> str:
 def draw_map(
     loaded: LoadedScene, request: MapRequest, path: Path
 ) -> tuple[list[tuple[Path, Content]], list[str]]:
-    """Draw a picture: an outline, a map, or the maps of a swing.
+    """Draw a picture: an outline, a map, the maps of a swing, or how a signal answers the hand.
 
     Parameters
     ----------
@@ -132,9 +137,13 @@ def draw_map(
     Raises
     ------
     InputError
-        If the picture has no such switch, nothing of it swings, or the file would be too large.
+        If the picture has no such switch or signal, nothing of it swings or answers, or the file
+        would be too large.
     """
     switches = _packed(loaded.scene, request)
+    if request.signal:
+        content, said = _signal(loaded, request, switches)
+        return [(path, content)], [f"drawn: {path}", *said]
     if loaded.scene.signals:
         from vbraille.render.compiling import settled  # loads the kernels
 
@@ -218,7 +227,8 @@ def _map(
 ) -> tuple[Content, list[str]]:
     """Make the file of one map, with what is over it and around it; and lines on the array."""
     if request.kind == "csv":
-        return scenes.map_csv(deflections, request.resolution), []
+        places = scenes.map_places(loaded.scene.canvas, request.resolution)
+        return scenes.map_csv("x_mm,y_mm,deflection", *places, deflections), []
     if request.kind == "png" and not request.array and not request.rulers:
         told = {"Title": loaded.title, "Description": _told(loaded, said)}
         return scenes.png(scenes.grays(deflections), request.resolution, told), []
@@ -244,10 +254,10 @@ def _map(
 
 
 def _file(loaded: LoadedScene, request: MapRequest, figure: Any, said: list[str]) -> bytes:
-    from vbraille.pictures.drawings import drawing_bytes
+    from vbraille.pictures.figurefiles import to_bytes
 
-    told = _told(loaded, said)
-    return drawing_bytes(figure, request.kind, request.resolution, loaded.title, told)
+    per_inch = request.resolution * scenes.MM_PER_INCH
+    return to_bytes(figure, request.kind, loaded.title, _told(loaded, said), per_inch)
 
 
 def _told(loaded: LoadedScene, said: list[str]) -> str:
@@ -271,22 +281,15 @@ def _packed(scene: Scene, request: MapRequest) -> int:
     return packed(dict(request.switches), scene.signals)
 
 
-def draw_signal(loaded: LoadedScene, name: str, request: MapRequest) -> tuple[Content, list[str]]:
+def _signal(loaded: LoadedScene, request: MapRequest, switches: int) -> tuple[Content, list[str]]:
     """Draw how a signal answers to each velocity of the hand: Lévesque 2009, 9.6.
 
     The picture is a grid of velocities as the canvas has them, right at the right and down below,
     with rest in the middle.
-
-    Raises
-    ------
-    InputError
-        If there is no such signal or switch, or the hand does not change it.
     """
     from vbraille.render.compiling import SceneMap  # loads the kernels
 
-    if request.kind == "gif":
-        raise InputError("a signal is drawn as .png, .svg, .pdf or .csv")
-    signals, switches = loaded.scene.signals, _packed(loaded.scene, request)
+    name, signals = request.signal, loaded.scene.signals
     if name not in signals:
         known = ", ".join(map(plain, signals)) or "none"
         raise InputError(f"the picture has no signal {plain(name)!r}; its signals are: {known}")
@@ -294,10 +297,8 @@ def draw_signal(loaded: LoadedScene, name: str, request: MapRequest) -> tuple[Co
     answering = [one for one in within.values() if isinstance(one, Speed | Direction)]
     if not answering:
         raise InputError(f"signal {plain(name)!r} does not depend on the velocity of the hand")
-    steady: dict[str, AnySignal] = {
-        one: Switch(levels=(1.0, 1.0)) if isinstance(signal, Pulse) else signal
-        for one, signal in signals.items()
-    }
+    pulses = [one for one, signal in signals.items() if isinstance(signal, Pulse)]
+    steady = {**signals, **dict.fromkeys(pulses, Switch(levels=(1.0, 1.0)))}
     shown = SceneMap(msgspec.structs.replace(loaded.scene, signals=steady, elements=()))
     number = [one.name for one in ordered(steady)].index(name)
 
@@ -311,10 +312,10 @@ def draw_signal(loaded: LoadedScene, name: str, request: MapRequest) -> tuple[Co
         f"edge: {edge:g} mm/s",
         *(f"signal {plain(one)}: {signal_words(signal)}" for one, signal in within.items()),
     ]
-    if any(isinstance(one, Pulse) for one in within.values()):
+    if not within.keys().isdisjoint(pulses):
         said.append("time: pulses are taken as 1")
+    angles = [math.tau * way / len(WAYS) for way in range(len(WAYS))]
     for speed in np.linspace(0.0, edge, _TOLD_SPEEDS).tolist():
-        angles = np.radians(np.arange(len(WAYS)) * 360.0 / len(WAYS)).tolist()
         values = [value(speed * math.cos(angle), speed * math.sin(angle)) for angle in angles]
         around = ", ".join(f"{way} {one:.2f}" for way, one in zip(WAYS, values, strict=True))
         if max(values) - min(values) < _ALIKE:
@@ -323,19 +324,13 @@ def draw_signal(loaded: LoadedScene, name: str, request: MapRequest) -> tuple[Co
     speeds = np.linspace(-edge, edge, _SIGNAL_STEPS)
     grid = np.array([[value(x, y) for x in speeds.tolist()] for y in speeds.tolist()], np.float32)
     if request.kind == "csv":
-        rows = [
-            f"{x:.6g},{y:.6g},{one:.6g}\n"
-            for y, row in zip(speeds, grid, strict=True)
-            for x, one in zip(speeds, row, strict=True)
-        ]
-        return "".join(["x_mm_s,y_mm_s,value\n", *rows]).encode(), said
-    from vbraille.pictures.drawings import drawing_bytes, map_figure
+        return scenes.map_csv("x_mm_s,y_mm_s,value", speeds, speeds, grid), said
+    from vbraille.pictures.drawings import map_figure  # loads matplotlib
 
     canvas = Canvas(width_mm=_SIGNAL_MM, height_mm=_SIGNAL_MM)
     scenes.check_pixels(canvas, request.resolution, most=scenes.MOST_PLACED_PIXELS)
     figure = map_figure(canvas, grid, rulers=(-edge, edge, edge, -edge), unit="mm/s")
-    told = "; ".join(said)
-    return drawing_bytes(figure, request.kind, request.resolution, loaded.title, told), said
+    return _file(loaded, request, figure, said), said
 
 
 def _within(signals: Mapping[str, AnySignal], name: str) -> Iterator[tuple[str, AnySignal]]:

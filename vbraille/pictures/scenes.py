@@ -43,7 +43,7 @@ MOST_PIXELS = {
 }
 MOST_PLACED_PIXELS = 1_300_000  # of a map with axes or an array in a PNG: A4 at 4 a mm
 _FRAME_MS = 100  # how long an animation shows each map: eyes see no 50 Hz
-_MM_PER_INCH = 25.4
+MM_PER_INCH = 25.4
 _UNKNOWN_MM = 10.0  # way of what moves without a wave, in a sequence
 # Limits of a small map, which a page loads and a recording keeps.
 _SMALL_PIXELS, _SMALL_BYTES = 300_000, 120_000
@@ -274,7 +274,7 @@ def png(
     for key, text in {**(told or {}), "Software": "vbraille"}.items():
         if text.strip():
             inside.add_text(key, plain(text))
-    dpi = pixels_per_mm * _MM_PER_INCH
+    dpi = pixels_per_mm * MM_PER_INCH
     content = io.BytesIO()
     Image.fromarray(pixels).save(content, "png", dpi=(dpi, dpi), pnginfo=inside, optimize=True)
     return content.getvalue()
@@ -304,25 +304,30 @@ def gif(maps: Sequence[NDArray[np.uint8]], told: str = "") -> bytes:
     return content.getvalue()
 
 
-def map_csv(deflections: NDArray[np.floating], pixels_per_mm: float) -> Iterator[bytes]:
-    """Write a map as CSV in the long form: a row for each pixel with x, y and its deflection.
+def map_csv(
+    header: str,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    values: NDArray[np.floating],
+) -> Iterator[bytes]:
+    """Write a map as CSV in the long form: a row for each pixel with x, y and its value.
 
     Parameters
     ----------
-    deflections : floating[rows, columns]
-        Deflections from 0 to 1.
-    pixels_per_mm
-        Resolution.
+    header
+        Names of the three columns.
+    x, y : float64[columns], float64[rows]
+        Places of its columns and rows.
+    values : floating[rows, columns]
+        The map.
 
     Yields
     ------
     bytes
         The file, a row of pixels at a time.
     """
-    rows, columns = deflections.shape
-    across = [f"{(column + 0.5) / pixels_per_mm:.10g}" for column in range(columns)]
-    yield b"x_mm,y_mm,deflection\n"
-    for row in range(rows):
-        y = f"{(row + 0.5) / pixels_per_mm:.10g}"
-        values = zip(across, deflections[row].tolist(), strict=True)
-        yield "".join(f"{x},{y},{round(value, 6):g}\n" for x, value in values).encode()
+    yield f"{header}\n".encode()
+    across = [f"{one:.10g}" for one in x.tolist()]
+    for down, row in zip(y.tolist(), values, strict=True):
+        cells = zip(across, row.tolist(), strict=True)
+        yield "".join(f"{one},{down:.10g},{round(value, 6):g}\n" for one, value in cells).encode()

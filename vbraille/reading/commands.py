@@ -82,6 +82,7 @@ _SPOKEN = {
     "(": "left parenthesis", ")": "right parenthesis", "[": "left bracket", "]": "right bracket",
     "{": "left brace", "}": "right brace",
 }  # fmt: skip
+WAYS = {"right": (1, 0), "left": (-1, 0), "down": (0, 1), "up": (0, -1)}
 _TYPED = {name: key for key, name in _SPOKEN.items()}
 
 

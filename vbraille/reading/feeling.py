@@ -189,7 +189,7 @@ def _translate(reader: Reader, language: str, grade: int | None = None) -> None:
             return
         table = BrailleTable(name, before.table.undefined)
         book = Book(before.source, table, language=language, grade=grade, switch=before.switch)
-        reader.lay_out(book)
+        reader.lay_out(book, reader.place, under=reader.cell is not None)
     except InputError as error:
         reader.refuse(str(error))
         return

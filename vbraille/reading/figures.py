@@ -126,7 +126,8 @@ class BookFigures:
         (number, made), self._making = self._making, None
         if number == surface.number:
             try:
-                surface.show_program(made.result())
+                surface.device.put(made.result(), number)
+                surface.figured = True
             except (InputError, ValueError) as error:
                 self._note(f"figure not felt: {error}")
 

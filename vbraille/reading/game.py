@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from vbraille.errors import InputError
 from vbraille.pictures.composing import compose
 from vbraille.pictures.loading import check_fits, load_scene
-from vbraille.reading.commands import Where, both_ways, command
+from vbraille.reading.commands import WAYS, Where, both_ways, command
 from vbraille.reading.explored import Explored
 from vbraille.reading.picture import sweep
 from vbraille.scene.scene import Scene
@@ -272,12 +272,7 @@ class Game(Explored):
         self.begin()
 
 
-for name, (right, down) in {
-    "right": (1, 0),
-    "left": (-1, 0),
-    "down": (0, 1),
-    "up": (0, -1),
-}.items():
+for name, (right, down) in WAYS.items():
     _command(f"place {name}", name, name=name)(partial(Game.move, right=right, down=down))
 for players, name in ((1, "one"), (2, "two")):
     _command(f"deal again for {name} player{'s' if players > 1 else ''}", str(players), name=name,

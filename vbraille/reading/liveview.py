@@ -9,8 +9,6 @@ from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from msgspec.structs import replace
-
 from vbraille.devices.base import Placing
 from vbraille.errors import InputError
 from vbraille.knobs import KNOBS
@@ -68,7 +66,7 @@ class LiveOutput(Output):
         self._last: deque[str] = deque(maxlen=_MOST_SAID)
         self._said = self._polls = 0
         self._draw = lru_cache(_MOST_DRAWN)(partial(ThreadPoolExecutor(1).submit, _drawn))
-        self._scene: SceneShown | None = None
+        self._images: dict[str, Any] = {}
         self._watched, self._failed = 0, False
 
     def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:  # noqa: ARG002 - cues are heard
@@ -164,7 +162,7 @@ class LiveOutput(Output):
             "mapping": mapping_said(style.mapping),
             "beside": beside,
             "figures": [
-                replace(self._drawing(figure, 0), top_mm=-top_mm)
+                _scene_shown(figure, self._drawn_of(figure, 0), 0.0, -top_mm)
                 for figure, top_mm in (reader.figures.on(reader) if reader.figured else ())
             ],
         }  # fmt: skip
@@ -191,22 +189,15 @@ class LiveOutput(Output):
     def _picture(self, picture: Any) -> dict[str, Any]:
         from vbraille.pictures.scenewords import signal_words
 
-        aperture, scene = picture.aperture, picture.shown.scene
-        drawn = self._drawing(picture.shown, self._device.engine.switches)
-        if drawn.image or self._scene is None:  # until then the one before stays
-            self._scene = drawn
+        shown, aperture = picture.shown, picture.aperture
+        # What was drawn before stays until this is.
+        self._images = self._drawn_of(shown, self._device.engine.switches) or self._images
         return {
-            "title": picture.shown.title,
+            "title": shown.title,
             "place": "" if picture.spot is None else f"here: {picture.spot.element.name}",
-            "scene": replace(
-                self._scene,
-                width_mm=scene.canvas.width_mm,
-                height_mm=scene.canvas.height_mm,
-                left_mm=aperture.left_mm,
-                top_mm=aperture.top_mm,
-            ),
+            "scene": _scene_shown(shown, self._images, aperture.left_mm, aperture.top_mm),
             "signals": [
-                SignalShown(name, signal_words(one)) for name, one in scene.signals.items()
+                SignalShown(name, signal_words(one)) for name, one in shown.scene.signals.items()
             ],
         }
 
@@ -244,10 +235,10 @@ class LiveOutput(Output):
             "place": screen.doing,
         }  # fmt: skip
 
-    def _drawing(self, loaded: LoadedScene, switches: int) -> SceneShown:
-        """Picture from above, as its switches stand; without an image until it is drawn."""
+    def _drawn_of(self, loaded: LoadedScene, switches: int) -> dict[str, Any]:
+        """Images of a picture as its switches stand; none until they are drawn."""
         drawing = self._draw(loaded, switches)
-        return drawing.result() if drawing.done() else _blank(loaded, "")
+        return drawing.result() if drawing.done() else {}
 
 
 def _offered(what: Explored) -> list[Any]:
@@ -255,13 +246,18 @@ def _offered(what: Explored) -> list[Any]:
     return [one for one in table(what.where) if one.steers]
 
 
-def _blank(loaded: LoadedScene, image: str) -> SceneShown:
-    scene = loaded.scene
-    size = scene.canvas.width_mm, scene.canvas.height_mm
-    return SceneShown(loaded.title, scene.description, *size, image)
+def _scene_shown(
+    loaded: LoadedScene, images: dict[str, Any], left_mm: float, top_mm: float
+) -> SceneShown:
+    """Picture from above, with its images."""
+    canvas, words = loaded.scene.canvas, loaded.scene.description
+    return SceneShown(
+        loaded.title, words, canvas.width_mm, canvas.height_mm,
+        left_mm=left_mm, top_mm=top_mm, **images,
+    )  # fmt: skip
 
 
-def _drawn(loaded: LoadedScene, switches: int) -> SceneShown:
+def _drawn(loaded: LoadedScene, switches: int) -> dict[str, Any]:
     """Draw a scene as its switches have it, and the layers that are off."""
     from vbraille.pictures.index import label_of
     from vbraille.pictures.scenes import hidden_layers, small_png
@@ -273,13 +269,13 @@ def _drawn(loaded: LoadedScene, switches: int) -> SceneShown:
 
     scene = loaded.scene
     shown = settled(scene, switches=switches) if scene.signals else scene
-    picture = _blank(loaded, address(shown))
+    images: dict[str, Any] = {"image": address(shown)}
     if not scene.signals:
-        return picture
+        return images
     hidden, every = hidden_layers(scene, switches)
     off = [
         f"{'' if element.factor == name else 'part of '}{label_of(element) or 'a layer'} "
         f"(signal {name})"
         for element, name in hidden
     ]
-    return replace(picture, off=off, off_image=address(every, shown)) if off else picture
+    return images | {"off": off, "off_image": address(every, shown)} if off else images

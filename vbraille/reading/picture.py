@@ -12,7 +12,7 @@ from vbraille.pictures.aperture import ZOOMS, Aperture
 from vbraille.pictures.composing import compose, viewed
 from vbraille.pictures.index import SceneIndex
 from vbraille.pictures.loading import FileWatch, check_fits, load_scene
-from vbraille.reading.commands import Where, both_ways, command
+from vbraille.reading.commands import WAYS, Where, both_ways, command
 from vbraille.reading.explored import Explored
 from vbraille.reading.outputs import Cue
 from vbraille.scene.checking import kind_of
@@ -41,6 +41,7 @@ _LINE_MM = 10.0  # between the lines that a hand goes along which goes by itself
 _WAY_EVERY_S = 1.0
 _PAN = 0.5  # of what is within reach
 _CONTRAST_STEP = 0.1
+_BUTTONED = 2  # switches that have a button of the device, too
 SAID = ("not said", "said", "said, with sounds")  # elements as the finger comes to them
 _NOWHERE = math.nan, math.nan
 _PICTURE = "picture"  # a goal that is reached where anything of it is felt
@@ -526,26 +527,20 @@ class Picture(Explored):
             self.say(f"note: {note}")
 
 
-def _add_ways() -> None:
-    ways = {
-        "right": (1, 0, "]", 10), "left": (-1, 0, "[", 9),
-        "down": (0, 1, "}", 12), "up": (0, -1, "{", 11),
-    }  # fmt: skip
-    for name, (right, down, bracket, button) in ways.items():
-        _command(f"pan the picture {name}", f"ctrl-{name} {bracket}",
-                 name=f"pan-{name}", also=f"button:{button}", steers=True)(
-            partial(Picture.pan, right=_PAN * right, down=_PAN * down)
-        )  # fmt: skip
-        for prefix, mm in (("", 1.0), ("shift-", 10.0)):
-            help_ = f"{mm:g} mm {name}; with the device in your own hand, another element"
-            _command(help_, prefix + name, name=f"move-{prefix}{name}")(
-                partial(Picture.move, right_mm=mm * right, down_mm=mm * down)
-            )
-    for key in range(1, MOST_KEYS + 1):
-        button = {1: "button:4", 2: "button:5"}.get(key, "")
-        _command(f"switch {key} of the picture", str(key), name=f"switch-{key}", also=button)(
-            partial(Picture.switch, key=key)
+for (name, (right, down)), bracket, button in zip(
+    WAYS.items(), "][}{", (10, 9, 12, 11), strict=True
+):
+    _command(f"pan the picture {name}", f"ctrl-{name} {bracket}",
+             name=f"pan-{name}", also=f"button:{button}", steers=True)(
+        partial(Picture.pan, right=_PAN * right, down=_PAN * down)
+    )  # fmt: skip
+    for prefix, mm in (("", 1.0), ("shift-", 10.0)):
+        help_ = f"{mm:g} mm {name}; with the device in your own hand, another element"
+        _command(help_, prefix + name, name=f"move-{prefix}{name}")(
+            partial(Picture.move, right_mm=mm * right, down_mm=mm * down)
         )
-
-
-_add_ways()
+for key in range(1, MOST_KEYS + 1):
+    also = f"button:{key + 3}" if key <= _BUTTONED else ""
+    _command(f"switch {key} of the picture", str(key), name=f"switch-{key}", also=also)(
+        partial(Picture.switch, key=key)
+    )

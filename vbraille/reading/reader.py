@@ -223,14 +223,15 @@ class Reader(Surface):
 
     # What is under the hand
 
-    def show(self, line: Line, cell: int = 0) -> None:
-        """Put the part of a line with a cell under the hand."""
-        self._put(Part(line, self.width).at(cell))
-
-    def _put(self, part: Part) -> None:
+    def show(self, line: Line, cell: int = 0, *, under: bool = False) -> None:
+        """Put the part of a line with a cell under the hand, or that cell under the finger."""
         before = self.parts and self.line
-        self.put(part)
-        self._arrive(another=before != part.line)
+        part, x_mm = Part(line, self.width), self.device.x_mm
+        if under and x_mm is not None:
+            self.put(part.under(cell, x_mm, self.style.geometry))
+        else:
+            self.put(part.at(cell))
+        self._arrive(another=before != line)
 
     def _arrive(self, *, another: bool = True) -> None:
         """Tell of the line that is under the hand now."""
@@ -266,21 +267,13 @@ class Reader(Surface):
         line, cell = found
         if what and self._echo != "none":
             self.say(what)
-        self._bring(line, cell, under=line == self.line and self.cell is not None)
+        self.show(line, cell, under=line == self.line and self.cell is not None)
         self._found = place
         self.announce(what)
 
     def _remember(self) -> None:
         self.back.append(self.place)
         del self.back[:-_TRAIL]
-
-    def _bring(self, line: Line, cell: int, *, under: bool) -> None:
-        """Show a cell of a line, under the finger or in its part of the line."""
-        part, x_mm = Part(line, self.width), self.device.x_mm
-        if under and x_mm is not None:
-            self._put(part.under(cell, x_mm, self.style.geometry))
-        else:
-            self._put(part.at(cell))
 
     def follow(self, ticks: NDArray[np.void]) -> None:
         """Look where the hand went, and give what follows once it is done with this."""
@@ -291,7 +284,11 @@ class Reader(Surface):
         if followed.line:
             self._arrive()
         if followed.reached:
-            self.say("", self._end_cue())
+            following = self.beside(1)
+            last = following is None or following.block.page_number
+            if self.rows:
+                last = self.line is self.lines[-1]
+            self.say("", Cue.PAGE_END if last else Cue.LINE_END)
         tick, alone = ticks[-1], self.device.hand_done and not self.attended
         felt = int(tick["line"]) == self.number and not int(tick["flags"]) & HELD
         missed = alone and felt  # the end, between two ticks
@@ -306,13 +303,6 @@ class Reader(Surface):
             for sentence in self._watch.watch(ticks, reached=self.reached, patient=patient):
                 self.say(sentence)
             self.hopeless = self._watch.hopeless
-
-    def _end_cue(self) -> Cue:
-        following = self.beside(1)
-        if self.rows:
-            return Cue.PAGE_END if self.line is self.lines[-1] else Cue.LINE_END
-        last = following is None or following.block.page_number
-        return Cue.PAGE_END if last else Cue.LINE_END
 
     def go_on(self) -> None:
         """Give the next part of the line, or what follows; at the end, say so."""
@@ -388,7 +378,7 @@ class Reader(Surface):
         """Say what is at a cell of the line, and bring it under the finger."""
         if cell < len(self.line):
             self._remember()
-            self._bring(self.line, cell, under=True)
+            self.show(self.line, cell, under=True)
         self.say(self.cell_said(cell))
 
     def cell_said(self, cell: int | None) -> str:
@@ -432,13 +422,10 @@ class Reader(Surface):
             self.show_in(style)
         else:
             self.fit(style)
-            self._lay_out(self.book, place, under=under)
+            self.lay_out(self.book, place, under=under)
 
-    def lay_out(self, book: Book) -> None:
-        """Lay the text out by another table; what is under the finger stays there."""
-        self._lay_out(book, self.place, under=self.cell is not None)
-
-    def _lay_out(self, book: Book, place: int, *, under: bool) -> None:
+    def lay_out(self, book: Book, place: int, *, under: bool) -> None:
+        """Lay the text out by another table or width, with a place of it under the hand."""
         before = self.layout
         layout = Layout(book, before.width if self._fixed else self.width)
 
@@ -452,7 +439,7 @@ class Reader(Surface):
             raise InputError(f"{book.source.name} has no text")
         self.layout = layout
         self.first, self.last = renumbered(self.first) or 1, renumbered(self.last)
-        self._bring(line, cell, under=under)
+        self.show(line, cell, under=under)
 
     def _read_anew(self) -> None:
         """Read a file anew that has changed, at the same place."""
@@ -461,7 +448,7 @@ class Reader(Surface):
             book = self._changed()
             if book is None:
                 return
-            self._lay_out(book, nearest(book.source, words, place), under=False)
+            self.lay_out(book, nearest(book.source, words, place), under=False)
         except InputError as error:
             self.refuse(f"the file has changed and cannot be read again: {error}")
             return

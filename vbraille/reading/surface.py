@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from vbraille.reading.figures import BookFigures
     from vbraille.reading.outputs import Output
     from vbraille.render import BrailleStyle
-    from vbraille.render.program import Program
 
 MOST_LINES, MOST_CELLS = 64, 512  # that are shown at once
 # Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
@@ -272,11 +271,6 @@ class Surface(Explored):
         if self.end_mm != before_mm:
             self._enter(self.row)
             self.steer()
-
-    def show_program(self, program: Program) -> None:
-        """Have a page with its figures take the place of the page without them."""
-        self.figured = True
-        self.device.put(program, self.number)
 
     def steer(self) -> None:
         """Have a simulated hand read what is shown."""

@@ -77,17 +77,19 @@ class SwitchStates(click.ParamType):
 )  # fmt: skip
 def command(file: str, out: str, force: bool, outline: bool, model: str, **chosen: Any) -> None:
     """Rest is white and full swing is black."""
+    from dataclasses import replace
+
     from vbraille.files import write_files
     from vbraille.pictures.keys import keyed
     from vbraille.pictures.loading import load_scene
-    from vbraille.pictures.maps import MapRequest, draw_map, draw_signal, kind_of
+    from vbraille.pictures.maps import MapRequest, draw_map, kind_of
     from vbraille.render import MODELS
 
     path = Path(out)
     request = MapRequest(
         kind_of(path), MODELS[model], chosen["resolution"], chosen["seed"], chosen["frames"],
         chosen["velocity"], chosen["switch"] or {}, chosen["array"] or (), chosen["rulers"],
-        outline,
+        outline, chosen["signal"] or "",
     )  # fmt: skip
     style = request.model.style
     # Dots of braille have no texture on paper, for which it is too fine.
@@ -98,13 +100,9 @@ def command(file: str, out: str, force: bool, outline: bool, model: str, **chose
         loaded, key = keyed(loaded, style)
     for note in loaded.notes:
         say(note, aside=True)
-    if chosen["signal"]:
-        content, said = draw_signal(loaded, chosen["signal"], request)
-        files, said = [(path, content)], [f"drawn: {path}", *said]
-    else:
-        files, said = draw_map(loaded, request, path)
+    files, said = draw_map(loaded, request, path)
     if key is not None:
-        page, words = draw_map(key, request, path.with_stem(f"{path.stem}-key"))
+        page, words = draw_map(key, replace(request, signal=""), path.with_stem(f"{path.stem}-key"))
         files, said = [*files, *page], [*said, *words]
     write_files(files, replace=force)
     for line in said:

@@ -67,7 +67,7 @@ def command(ctx: click.Context, kind: str, **chosen: Any) -> None:
     from vbraille.pictures.draw import draw
     from vbraille.pictures.figurefiles import to_bytes
 
-    content = to_bytes(draw(table), suffix, {"Title": table.title})
+    content = to_bytes(draw(table), suffix, table.title)
     write_files([(path, content)], replace=chosen["force"])
     say(f"drawn: {table.title}, {path}")
 
