@@ -10,15 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, Rectangle
+from matplotlib.patches import Circle
 
 from vbraille.pictures.figurefiles import FAINT, MIDDLE, styled
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from matplotlib.axes import Axes
-    from matplotlib.patches import Patch
     from numpy.typing import NDArray
 
     from vbraille.pictures.series import FigureTable
@@ -26,6 +23,7 @@ if TYPE_CHECKING:
 _BAND = 1.25  # from one curve's rest to the next one's, in full swings
 _ACROSS = 3  # panels side by side
 _TALLEST = 40.0  # inches
+_LINE = 0.6  # points
 
 
 def draw(table: FigureTable) -> Figure:
@@ -79,9 +77,7 @@ def _page(table: FigureTable) -> Figure:
     """
     dots, actuators = table.where("what", "dot"), table.where("what", "actuator")
     x, y, pitch = actuators["x_mm"], actuators["y_mm"], actuators["width_mm"][0]
-    rows = np.unique(y)
-    tall = rows[1] - rows[0] if rows.size > 1 else pitch
-    places = list(zip(x - 0.3 * pitch, y + 0.35 * tall, actuators["deflection"], strict=True))
+    tall = max(np.diff(y), default=0.0) or pitch
     around = (x.min() - 2 * pitch, x.max() + 2 * pitch, y.min() - tall, y.max() + tall)
     whole = (
         min(around[0], -12),  # room for the lines' numbers
@@ -96,16 +92,16 @@ def _page(table: FigureTable) -> Figure:
     figure = Figure(figsize=(10, 2.2 + sum(heights)))
     panels = figure.subplots(2, 1, height_ratios=heights)
     for axes, (left, right, top, bottom) in zip(panels, (whole, around), strict=True):
-        axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
-        axes.set(xlabel="along the line, x (mm)", ylabel="y (mm)")
         for raised, edge, fill in ((0, FAINT, "none"), (1, MIDDLE, FAINT)):
             some = dots.where("raised", raised)
             centers = zip(some["x_mm"], some["y_mm"], strict=True)
-            _patches(axes, map(Circle, centers, some["width_mm"] / 2), edge, fill)
-        boxes = (Rectangle((u, v), 0.6 * pitch, -0.7 * tall) for u, v, _ in places)
-        fills = (Rectangle((u, v), 0.6 * pitch, -0.7 * tall * d) for u, v, d in places)
-        _patches(axes, boxes, "black", "white")
-        _patches(axes, fills, "black", "black")
+            rings = [*map(Circle, centers, some["width_mm"] / 2)]
+            axes.add_collection(PatchCollection(rings, ec=edge, fc=fill, lw=_LINE))
+        for share, fill in ((1.0, "white"), (actuators["deflection"], "black")):
+            up, foot = -0.7 * tall * share, y + 0.35 * tall
+            axes.bar(x, up, 0.6 * pitch, foot, color=fill, ec="black", lw=_LINE)
+        axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+        axes.set(xlabel="along the line, x (mm)", ylabel="y (mm)")
     for number in np.unique(dots["line"]):
         middle = dots.where("line", number)["y_mm"].mean()
         panels[0].text(whole[0] + 6, middle, str(int(number)), ha="center", va="center")
@@ -144,8 +140,3 @@ def plot_frames(
     )
     axes.set(title=title, xlabel="centre of the array (mm)", ylabel="actuator")
     return axes
-
-
-def _patches(axes: Axes, patches: Iterable[Patch], edge: str, fill: str) -> None:
-    some = PatchCollection([*patches], edgecolor=edge, facecolor=fill, linewidth=0.6)
-    axes.add_collection(some)

@@ -88,12 +88,6 @@ def _spell(value: str | float) -> str:
     return f"{round(value, 6) + 0.0:.12g}"  # + 0.0, so that no "-0" is written
 
 
-_PAGE = (
-    "what", "line", "x_mm", "y_mm", "width_mm", "cell", "dot", "raised", "row", "column",
-    "deflection",
-)  # fmt: skip
-
-
 def page(lines: Sequence[Line], model: Model, *, x_mm: float, first: int = 1) -> FigureTable:
     """Dots of some lines where they stand on the surface, and the array upon the first of them.
 
@@ -119,33 +113,41 @@ def page(lines: Sequence[Line], model: Model, *, x_mm: float, first: int = 1) ->
     style, geometry, array = model.style, model.style.geometry, model.display
     eight = any((line.masks > 0x3F).any() for line in lines)
     places = list(PLACES.items())[: 8 if eight else 6]
-    none, middle = math.nan, geometry.dot_width_mm / 2
-    rows: list[tuple[Any, ...]] = [
-        (
-            "dot",
-            first + number,
-            cell * geometry.cell_pitch_mm + right * geometry.dot_spacing_mm + middle,
-            number * geometry.line_pitch_mm + down * geometry.row_spacing_mm,
-            geometry.dot_width_mm,
-            *(cell, dot, float(bool(mask & mask_of([dot]))), none, none, none),
-        )
+    frame = style.render(lines[0].masks, array).path(np.array([x_mm]))[0]
+    left, top = x_mm - array.span_mm / 2, _first_row_mm(model)
+    across, along = array.column_offsets_mm(), array.row_offsets_mm()
+    rows: list[dict[str, Any]] = [
+        {
+            "what": "dot",
+            "line": first + number,
+            "x_mm": cell * geometry.cell_pitch_mm
+            + right * geometry.dot_spacing_mm
+            + geometry.dot_width_mm / 2,
+            "y_mm": number * geometry.line_pitch_mm + down * geometry.row_spacing_mm,
+            "width_mm": geometry.dot_width_mm,
+            "cell": cell,
+            "dot": dot,
+            "raised": bool(mask & mask_of([dot])),
+        }
         for number, line in enumerate(lines)
         for cell, mask in enumerate(line.masks.tolist())
         for dot, (right, down) in places
     ]
-    frame = style.render(lines[0].masks, array).path(np.array([x_mm]))[0]
-    left, top = x_mm - array.span_mm / 2, _first_row_mm(model)
-    across, along = array.column_offsets_mm(), array.row_offsets_mm()
     rows += [
-        (
-            *("actuator", first, left + across[column], top + along[row], array.column_pitch_mm),
-            *(none, none, none, row, column, deflection),
-        )
+        {
+            "what": "actuator",
+            "line": first,
+            "x_mm": left + across[column],
+            "y_mm": top + along[row],
+            "width_mm": array.column_pitch_mm,
+            "row": row,
+            "column": column,
+            "deflection": deflection,
+        }
         for (row, column), deflection in np.ndenumerate(frame)
     ]
-    columns = {
-        name: np.array(values) for name, values in zip(_PAGE, zip(*rows, strict=True), strict=True)
-    }
+    names = dict.fromkeys([*rows[0], "cell", "dot", "raised", *rows[-1]])
+    columns = {name: np.array([row.get(name, math.nan) for row in rows]) for name in names}
     title = (
         f"{model.title}: line {first}, left column at {left:g} mm, "
         f"{style.mapping.name}{tuning_words(style.tuning)}"
