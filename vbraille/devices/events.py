@@ -165,16 +165,6 @@ class NotInTime(Event, frozen=True):
         )
 
 
-class Exposed(Event, frozen=True):
-    """A picture has moved by itself for as long as it may, and was faded to rest."""
-
-    limit_s: float
-    says = (
-        "picture: it moved by itself for {limit_s:g} s, and rests, which spares the skin; "
-        "pause and go on to begin it anew"
-    )
-
-
 class Placed(Event, frozen=True):
     """The device waits for another act before it knows its place, or knows it now."""
 

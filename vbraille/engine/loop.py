@@ -91,8 +91,8 @@ class Loop(LoopState):
         return Tally(int(now["tick"]), self._late, self._overruns, *forward)
 
     def take_events(self) -> list[Event]:
-        """Take the events of the device and of the picture since the last call."""
-        return [*self.device.take_events(), *super().take_events()]
+        """Take the events of the device since the last call."""
+        return list(self.device.take_events())
 
     def tick(self) -> None:
         """Wait for the next tick's time, or pose; make the frame and write it.
@@ -269,7 +269,7 @@ class LocalEngine(Loop, Watcher):
         return ticks
 
     def take_events(self) -> list[Event]:
-        """Take the events of the device, the picture and the ticks since the last call."""
+        """Take the events of the device and the ticks since the last call."""
         return [*super().take_events(), *self._take_found()]
 
     def set_zero(self) -> None:

@@ -57,7 +57,6 @@ class Flag(IntFlag):
     CHANGED = 64  # a fade begins here, from the frame before
     RESTED = 128  # the device had gone to rest by itself: the frame before was rest
     HELD = 256  # the device is at rest by itself and takes none of the frames that it is sent
-    EXPOSED = 512  # the picture has moved by itself for as long as it may, and rests
     TURNED = 1024  # the array is turned too far for the picture, and rests
     UNFELT = 2048  # something is to be felt, and for one of these reasons cannot be
 

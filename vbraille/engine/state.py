@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.devices.events import Exposed
 from vbraille.engine import ticks
 from vbraille.engine.constants import (
     CATCH_S,
@@ -29,7 +28,6 @@ from vbraille.render.program import nothing
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.devices.events import Event
     from vbraille.display import Display
     from vbraille.render.program import Program
 
@@ -50,8 +48,6 @@ _WHOLE = (
     "shown",  # serial number of what is under the hand; 0 at rest
     "turned",  # whether the array is turned too far for what is wanted
     "begun", "shown_ns",  # the picture whose own time goes, and that time
-    "exhausted",  # the picture that has moved by itself for as long as it may
-    "exposures",  # how often one has
     "rested",  # how often the device has gone to rest by itself
     "samples",  # of the velocity
 )  # fmt: skip
@@ -119,7 +115,7 @@ class LoopState:
         self._program = nothing(display)
         # The frame before, the time at which it was sent, and how far its fade had come.
         self._before, self._before_ns = self.output.copy(), (now_ns, 0)
-        self._serials = self._exposures = 0
+        self._serials = 0
 
     def show(self, picture: Program | None, line: int = 0) -> None:
         """Put another picture under the hand from the next tick on; it fades in. None is rest.
@@ -157,7 +153,7 @@ class LoopState:
     def paused(self, paused: bool) -> None:
         self.now["paused"] = paused
         self.now["moved_ns"] = self.now["time_ns"]
-        self.now["begun"] = self.now["exhausted"] = 0
+        self.now["begun"] = 0
 
     @property
     def switches(self) -> int:
@@ -171,12 +167,6 @@ class LoopState:
     def switches(self, switches: int) -> None:
         self.now["switches"] = switches
         self.now["moved_ns"] = self.now["time_ns"]
-
-    def take_events(self) -> list[Event]:
-        """Take the events since the last call: that a picture was felt for long enough."""
-        told, self._exposures = self._exposures, int(self.now["exposures"])
-        limit_s = float(self._program.numbers[work.EXPOSURE])
-        return [Exposed(limit_s)] * (self._exposures - told)
 
     def advance(
         self,

@@ -30,7 +30,7 @@ from vbraille.render.signalkernels import begin, compute
 
 _PAUSED, _SILENT, _RESTING = int(Flag.PAUSED), int(Flag.SILENT), int(Flag.RESTING)
 _CHANGED, _RESTED, _HELD = int(Flag.CHANGED), int(Flag.RESTED), int(Flag.HELD)
-_EXPOSED, _TURNED, _UNFELT = int(Flag.EXPOSED), int(Flag.TURNED), int(Flag.UNFELT)
+_TURNED, _UNFELT = int(Flag.TURNED), int(Flag.UNFELT)
 # What a tick is given, each a row of float64; times are whole numbers that fit into one.
 (POSED, POSE_X, POSE_Y, POSE_THETA) = range(4)
 _NOWHERE_MM = 1e6
@@ -141,8 +141,6 @@ def _wanted(now, taking, numbers):
     """Serial number of the picture that belongs under the hand now; 0 is rest."""
     if now["paused"] or now["placed"] == 0 or not taking or now["turned"]:
         return 0
-    if now["exhausted"] == now["serial"]:
-        return 0
     if now["time_ns"] - now["sampled_ns"] > now["silence_ns"]:
         return 0
     # A picture that moves by itself is felt without moving the hand, though not without end.
@@ -164,10 +162,6 @@ def _decide(now, y_mm, rested, taking, numbers):
     if not taking:
         now["shown"] = 0
         now["faded_ns"] = now["fading_ns"]
-    is_wanted = now["shown"] != 0 and now["shown"] == now["serial"]
-    if is_wanted and now["shown_ns"] >= numbers[work.EXPOSURE] * NS_PER_S:
-        now["exhausted"] = now["serial"]
-        now["exposures"] += 1
     turned = now["placed"] != 0 and too_far(numbers, now["theta_rad"], now["turned"] != 0)
     now["turned"] = 1 if turned else 0
     wanted = _wanted(now, taking, numbers)
@@ -191,14 +185,12 @@ def _decide(now, y_mm, rested, taking, numbers):
 def _remark(now, taking):
     """Set the flags that say what a tick was like."""
     silent = now["time_ns"] - now["sampled_ns"] > now["silence_ns"]
-    exposed = now["exhausted"] != 0 and now["exhausted"] == now["serial"]
     away = now["placed"] == 0 or now["turned"] or not taking or silent or now["flags"] & _RESTED
     unfelt = now["serial"] != 0 and not now["paused"] and away
     now["flags"] |= (
         _PAUSED * (now["paused"] != 0)
         + _SILENT * silent
         + _HELD * (not taking)
-        + _EXPOSED * exposed
         + _TURNED * now["turned"]
         + _UNFELT * (unfelt != 0)
     )

@@ -231,7 +231,7 @@ def head(
     numbers = np.zeros(places)
     numbers[work.KIND] = kind
     numbers[work.OWN_Y] = own_y_mm
-    numbers[work.EXPOSURE] = numbers[work.TILT] = math.inf
+    numbers[work.TILT] = math.inf
     numbers[work.ROWS], numbers[work.COLUMNS] = display.shape
     numbers[work.COLUMN_PITCH] = display.column_pitch_mm
     numbers[work.ROW_PITCH] = display.row_pitch_mm

@@ -23,7 +23,6 @@ class ProgramKind(IntEnum):
     OWN_Y,  # y of the array on a carriage that has no such axis, mm
     FREQUENCY,  # at which a picture moves by itself, Hz; 0 if it does not
     AMPLITUDE,  # its largest swing of an actuator by itself, as a share of the full swing
-    EXPOSURE,  # how long it may move by itself before it fades, s
     TILT,  # angle of the array beyond which nothing is shown, rad; infinite if any will do
     ROWS,  # rows and columns of the display that it was compiled for
     COLUMNS,
@@ -33,7 +32,7 @@ class ProgramKind(IntEnum):
     ORIGIN_X,  # place of the canvas under an array at 0, 0
     ORIGIN_Y,
     OWN,  # first of the numbers whose meaning differs from kind to kind
-) = range(14)
+) = range(13)
 
 # A line, or a page of lines.
 (

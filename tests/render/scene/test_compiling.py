@@ -118,7 +118,6 @@ def test_the_head_tells_what_moves():
     )
     assert still.numbers[work.FREQUENCY] == 0.0
     assert moving.numbers[work.FREQUENCY] == 30.0
-    assert math.isinf(moving.numbers[work.EXPOSURE])
     assert kernels.patience(moving.numbers) == work.PATIENCE_S
     assert math.isinf(kernels.patience(still.numbers))
     assert compiled(LinearGrating(ridge_mm=2.0, gap_mm=3.0, velocity_mm_s=-20.0)).numbers[

@@ -33,7 +33,6 @@ const FLAGS = /** @type {[number, string][]} */ ([
   [16, "waits to be told that it is at the left stop"],
   [32, "resting"],
   [256, "the device is at rest by itself"],
-  [512, "rests: it moved by itself for as long as it may"],
   [1024, "rests: the array is turned too far"],
 ]);
 
