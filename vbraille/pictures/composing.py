@@ -55,20 +55,15 @@ def compose(
     try:
         program = compile_scene(scene, display, loaded.assets, rate_hz=rate_hz)
     except ValueError as error:
-        _refuse_too_fast(loaded, rate_hz)
+        for number, element in enumerate(loaded.scene.elements):
+            try:
+                highest_hz(element, number + 1, rate_hz)
+            except ValueError as too_fast:
+                raise InputError(f"{loaded.place(number)}: {too_fast}") from None
         raise InputError(f"{loaded.opened.path}: {error}") from None
     height_mm = scene.canvas.height_mm / 2 if own_y_mm is None else own_y_mm
     program.numbers[work.OWN_Y] = height_mm
     return program
-
-
-def _refuse_too_fast(loaded: LoadedScene, rate_hz: float) -> None:
-    """Say which element moves too fast for the rate, and where it is written."""
-    for number, element in enumerate(loaded.scene.elements):
-        try:
-            highest_hz(element, number + 1, rate_hz)
-        except ValueError as error:
-            raise InputError(f"{loaded.place(number)}: {error}") from None
 
 
 def viewed(

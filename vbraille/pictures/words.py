@@ -17,11 +17,4 @@ _UNFIT = re.compile(
 
 def plain(text: str) -> str:
     """Put a text on one line; what no page can show is spelled as Python spells it."""
-    return _UNFIT.sub(_spell, _BREAKS.sub(" ", text))
-
-
-def _spell(found: re.Match[str]) -> str:
-    code = ord(found[0])
-    if code < 0x100:
-        return f"\\x{code:02x}"
-    return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+    return _UNFIT.sub(lambda found: ascii(found[0])[1:-1], _BREAKS.sub(" ", text))
