@@ -89,7 +89,7 @@ def over_time(table: DataFrame) -> Figure:
     figure, panels = _panels(len(runs), 1.3)
     for axes, (names, run) in zip(panels, runs, strict=True):
         many = len(run) > MOST_POINTS
-        axes.plot(run["number"], 100 * run["right"], ".", color=".65", ms=3, rasterized=True)
+        axes.plot(run["number"], 100 * run["right"], ".", color=".65", ms=3, rasterized=many)
         axes.plot(run["number"], 100 * run["average"], "k", lw=1, rasterized=many)
         axes.set_title(", ".join(map(str, names)), fontsize=7)
     figure.supxlabel("trial")
