@@ -1,5 +1,8 @@
 """Keys: names for bytes, commands for keys, and the prompt."""
 
+import subprocess
+import sys
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -103,3 +106,16 @@ def test_a_prompt_brings_what_was_typed_before():
     assert prompt.press("up") == prompt.press("up") == "older"
     prompt.press("down"), prompt.press("down")
     assert prompt.text == ""
+
+
+@pytest.mark.parametrize("first", ["searching", "structure", "screen", "moving"])
+def test_commands_stand_in_one_order_whatever_was_loaded_first(first):
+    told = "from vbraille.reading.commands import Where, table\n"
+    told += "print([each.name for each in table(Where.BOOK)])"
+    orders = {
+        subprocess.run(
+            [sys.executable, "-c", before + told], capture_output=True, text=True, check=True
+        ).stdout
+        for before in ("", f"import vbraille.reading.{first}\n")
+    }
+    assert len(orders) == 1

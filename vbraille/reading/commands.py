@@ -146,10 +146,17 @@ def _half(keys: list[str], half: int) -> str:
 
 
 def table(where: Where) -> list[Command]:
-    """Commands for something, what all have first; the modules of their functions load now."""
-    for name in ("explored", *_MODULES[where]):
-        import_module(f"vbraille.reading.{name}")
-    return [each for each in _COMMANDS if each.where & where]
+    """Commands for something, what all have first, in an order that no other import changes."""
+    modules = [f"vbraille.reading.{name}" for name in ("explored", *_MODULES[where])]
+    for module in modules:
+        import_module(module)
+    found = [each for each in _COMMANDS if each.where & where]
+    return sorted(found, key=lambda each: modules.index(_module(each.run)))
+
+
+def _module(function: Any) -> str:
+    """Name of the module of a function, or of the function of a partial."""
+    return getattr(function, "func", function).__module__
 
 
 def keys_of(each: Command, key_set: str) -> tuple[str, ...]:
