@@ -140,8 +140,8 @@ def errors(table: DataFrame) -> Figure:
 
 def patterns(table: DataFrame) -> Figure:
     """Draw how many strings were read in each pattern, figure 3.15."""
-    kinds = [name for name in map(str, table) if not name.startswith(("speed_", *CELL))]
-    parts = {name: table[name] for name in kinds}
+    told = ("speed_", *CELL)
+    parts = {name: table[name] for name in map(str, table) if not name.startswith(told)}
     return _bars(table[CELL].agg(", ".join, axis=1), parts, "participant, condition", "strings")
 
 
