@@ -22,6 +22,7 @@ _INLINE = re.compile(r"`([^`\n]+)`")
 _LINK = re.compile(r"\]\(([^)#\s]+)[^)\s]*\)")
 _OPTION = re.compile(r"--[a-z][a-z-]*")
 _FILE = re.compile(r"(?:vbraille|tests|texts|docs)/[\w./-]*\w/?")
+_SOURCE = re.compile(r"^[a-z_]+(?:/\w+)+\.(?:py|toml|csv|js|h)$")
 _CLASS = re.compile(r"^class ([A-Z]\w*)", re.MULTILINE)
 _ALIAS = re.compile(r"^([A-Z]\w*) = ", re.MULTILINE)
 _MODULE = re.compile(r"(?<![/-])vbraille(?:\.[A-Za-z_]\w*)+")
@@ -101,6 +102,14 @@ def test_each_file_that_is_named_is_there(page):
     for words in code(page):
         for name in _FILE.findall(words):
             assert (ROOT / name).exists() or "…" in words, name
+
+
+def test_each_file_that_the_architecture_names_is_there():
+    page = DOCS / "architecture.md"
+    named = [name for words in code(page) for name in _SOURCE.findall(words)]
+    assert len(named) > 40
+    there = [(ROOT / name).exists() or (ROOT / "vbraille" / name).exists() for name in named]
+    assert [name for name, found in zip(named, there, strict=True) if not found] == []
 
 
 @of_each(PAGES)
