@@ -133,9 +133,6 @@ class Display:
         return np.arange(self.rows, dtype=np.float64) * self.row_pitch_mm
 
 
-USUAL_RATE_HZ = 1000.0  # of a loop, unless a caller asks for another, or its device takes fewer
-
-
 def check_rate(rate_hz: float) -> float:
     """Frames a second, if a loop can have so many.
 

@@ -60,12 +60,6 @@ def process_seconds(arguments: Sequence[str]) -> float:
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def process_ratio(ours: Sequence[str], theirs: Sequence[str], pairs: int = 11) -> float:
-    """Median ratio of the processor times of two commands."""
-    process_seconds(ours), process_seconds(theirs)
-    return statistics.median(process_seconds(ours) / process_seconds(theirs) for _ in range(pairs))
-
-
 def vbraille(*arguments: str) -> list[str]:
     """The command line of the installed program."""
     return [str(Path(sys.executable).with_name("vbraille")), *arguments]

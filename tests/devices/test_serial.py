@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from vbraille.devices import open_device
-from vbraille.devices.events import Back, Unplugged
+from vbraille.devices.events import Back, Button, Knob, Unplugged
 from vbraille.devices.line import Line, parse_address
 from vbraille.engine.checkup import taking_parts
 from vbraille.errors import DeviceError, InputError
@@ -47,6 +47,22 @@ def test_a_controller_is_found_and_read_and_takes_frames():
             -VBD.span_mm / 2, abs=0.5
         )  # it sets out from the stop
         assert all(after.time_ns > before.time_ns for before, after in pairwise(poses))
+
+
+def test_buttons_and_knobs_of_a_controller_move_when_they_are_to():
+    moved = []
+    with (
+        simulated_controller(VBD, press="2@0.5s-60s, knob 1 1@0.5s") as spec,
+        open_device(spec, None) as device,
+    ):
+
+        def both():
+            moved.extend(device.take_events())
+            pressed = any(isinstance(each, Button) and each.number == 2 for each in moved)
+            return pressed and any(isinstance(each, Knob) and each.value == 1 for each in moved)
+
+        drive(device, 8, both)
+        assert both()
 
 
 def test_a_board_that_starts_when_its_port_is_opened_is_waited_for():

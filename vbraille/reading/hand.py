@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _STILL_S = 10.0
 _STILL_MM = 0.5  # a hand that moves less is still
 _REFUSED_S, _HOPELESS_S = 1.0, 10.0  # without a frame taken
-_TURNS, _SAME_MM = 3, 1.0  # so many turns at the same place are an obstacle
+_TURNS, _SAME_MM = 3, 1.0  # three turns within 1 mm are an obstacle
 _LEAST_WAY_MM = 20.0  # a hand that has gone less waits at the left
 # Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
 _PLACING, HELD = int(Flag.MARK | Flag.STOP), int(Flag.HELD)

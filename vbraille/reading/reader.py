@@ -336,7 +336,7 @@ class Reader(Surface):
         return True
 
     def scroll(self, cells_s: float) -> None:
-        """Have lines come by time, at so many cells a second; 0 for by hand."""
+        """Scroll at a speed in cells a second; 0 ends it."""
         if not self.scroll_cells_s:
             self._cells_due = max(len(self.part), 1)
         self.scroll_cells_s = cells_s

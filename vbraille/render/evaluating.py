@@ -98,7 +98,6 @@ HEAD = 3  # numbers of an instruction before its constants
 _FAR = 1e30
 _NO_PLACE = 1e9  # mm; a centre farther away is none
 _CENTER_X, _CENTER_Y = MOST_SIGNALS, MOST_SIGNALS + 1
-GIVEN = MOST_SIGNALS + 2
 
 
 @compiled

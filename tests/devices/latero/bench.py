@@ -136,5 +136,5 @@ class Bench:
 
     @property
     def steps(self):
-        """How far blades went towards rest from one FULL to the next; int[n, 64]."""
+        """Steps of the blades towards rest from one FULL to the next; int[n, 64]."""
         return np.diff(np.array(self.levels).astype(int), axis=0)

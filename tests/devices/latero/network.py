@@ -1,4 +1,4 @@
-"""What a network does to the datagrams of a Latero."""
+"""A network that loses, delays and doubles the datagrams of a Latero."""
 
 from __future__ import annotations
 

@@ -160,17 +160,6 @@ def test_a_mapping_must_stand_on_the_array(first_row):
         style.render(np.full(3, 63, np.uint8), LATERO)
 
 
-@pytest.mark.parametrize("cycles", [1, 7, 11])
-def test_the_texture_of_the_vbd_has_an_eighth_of_the_wavelength(cycles):
-    # The dot is half a wave of 2 W; k is the STReSS²'s alone.
-    assert Profile.HALF_SINE.texture_period_mm(2.0, cycles) == 2 * 2.0 / 8
-
-
-@pytest.mark.parametrize(("cycles", "period_mm"), [(1, 2.6), (5, 0.52), (7, 2 * 1.3 / 7)])
-def test_the_texture_of_the_stress2_has_k_waves_a_dot(cycles, period_mm):
-    assert Profile.RAISED_COSINE.texture_period_mm(2.6, cycles) == pytest.approx(period_mm)
-
-
 _POSTED_TO_A_HOST = """
 import sys
 import numpy as np

@@ -33,6 +33,7 @@ PLACES = {
         190, 150, 200, 160),
     '<g font-size="4"><rect x="1em" y="1em" width="10em" height="5em"/></g>': (4, 4, 44, 24),
     '<g font-size="4"><g font-size="2em"><rect width="1em" height="1em"/></g></g>': (0, 0, 8, 8),
+    '<g style="font: italic 700 4px/2 serif"><rect width="10em" height="5em"/></g>': (0, 0, 40, 20),
     '<rect x="calc(50% - 5px)" width="10" height="min(10%, 3px)"/>': (45, 0, 55, 3),
     '<rect x="50%" y="50%" width="calc(2 * (1px + 4px))" height="10"/>': (50, 40, 60, 50),
     '<style>rect{width:30px}</style><rect width="10" height="10"/>': (0, 0, 30, 10),

@@ -21,7 +21,7 @@ CAUSES = {
 
 @pytest.fixture
 def driven(monkeypatch):
-    """What has the next session driven by an engine of a kind, which is polled every 100 ticks."""
+    """Function that has the next session driven by an engine of a kind, polled every 100 ticks."""
 
     def drive(kind):
         monkeypatch.setattr(device, "BatchEngine", lambda *how: kind(*how, 100))

@@ -409,7 +409,7 @@ class LateroDevice(Device):
         self._until(lambda: self.taking or self._tries > 0, ANSWER_S)
 
     def _until(self, true: Callable[[], object], seconds: float) -> bool:
-        """Ask until something is true; tell whether it is, within so many seconds."""
+        """Ask until something is true, for some seconds at most; tell whether it is."""
         until_ns = self._now_ns() + round(seconds * 1e9)
         while not true():
             if self._now_ns() > until_ns:

@@ -85,12 +85,6 @@ class Profile(IntEnum):
     RAISED_COSINE = 1
     """The profile of the STReSS²: Lévesque 2009, eqs. 4.1-4.3."""
 
-    def texture_period_mm(self, dot_width_mm: float, cycles: int) -> float:
-        """Tell the wavelength of the texture along x, in mm."""
-        if self is Profile.HALF_SINE:
-            return dot_width_mm / 4
-        return dot_width_mm / cycles
-
 
 # How an array is read that does not stand where the line has its dots, as options name it.
 Manner = Literal["line", "free"]

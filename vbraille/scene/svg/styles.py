@@ -61,7 +61,7 @@ _PROPERTIES = {
     "overflow": ("visible", ("visible", "hidden", "scroll", "auto")),
 }  # fmt: skip
 INITIAL: Style = {name: value for name, (value, _) in _PROPERTIES.items()}
-_SHORTHANDS = {"marker": ("marker-start", "marker-mid", "marker-end")}
+_SHORTHANDS = {"marker": ("marker-start", "marker-mid", "marker-end"), "font": ("font-size",)}
 # Attributes of these names are something else than the property.
 _NO_ATTRIBUTES = frozenset(("rotate", "scale", "translate"))
 _HIDING = frozenset(("svg", "symbol", "marker"))  # what is outside of their viewport
@@ -89,7 +89,10 @@ def _declarations(css: str) -> tuple[list[Declaration], list[Declaration]]:
     for one in tinycss2.parse_blocks_contents(css, skip_comments=True, skip_whitespace=True):
         if one.type != "declaration":
             continue
-        value = tinycss2.serialize(one.value).strip()
+        parts = one.value
+        if one.lower_name == "font":  # its size is the first number with a unit
+            parts = [part for part in parts if part.type in ("dimension", "percentage")][:1]
+        value = tinycss2.serialize(parts or one.value).strip()
         for name in _SHORTHANDS.get(one.lower_name, (one.lower_name,)):
             if name in _PROPERTIES:
                 into = understood if _is_understood(name, value) else others
