@@ -438,7 +438,7 @@ def scene_of(file: h5py.File) -> SceneRecorded | None:
 
 
 def print_in(file: h5py.File, row: int, length: int) -> Print:
-    """Read the print of a line, of a row of ``page/cells`` with so many cells.
+    """Read the print of a line: a row of ``page/cells``, and its number of cells.
 
     A recording of braille, and one that was written before recordings had their print, has none.
     """

@@ -209,7 +209,7 @@ def plain(value: float) -> str:
 
 
 def p_words(value: float, name: str = "p") -> str:
-    """Return a p, with so many digits that it is not 0.050 unless it is 0.05."""
+    """Return a p with two digits, or more where it would round to 0.05."""
     if value < 0.001:
         return f"{name} < 0.001"
     digits = next(n for n in (3, 5, 7, 9) if n == 9 or round(value, n) != stats.ALPHA)

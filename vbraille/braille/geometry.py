@@ -71,7 +71,7 @@ class Geometry:
         return self.dot_spacing_mm + self.cell_gap_mm
 
     def extent_mm(self, cells: int) -> float:
-        """Tell where the last dot column of a line of so many cells ends; 0 for no cells."""
+        """Return the right end of the last dot column of a line of some cells; 0 for no cells."""
         if cells == 0:
             return 0.0
         return (cells - 1) * self.cell_pitch_mm + self.dot_spacing_mm + self.dot_width_mm

@@ -47,7 +47,7 @@ def open_device(
     fits
         Whether the device must have those actuators; otherwise they are a wish.
     often
-        Whether the device must take so many frames a second; otherwise that is a wish, too.
+        Whether the device must take frames at this rate; otherwise the rate is a wish, too.
 
     Raises
     ------

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 _RATE_S = 3.0
 _MOST_ROUND_TRIP_MS = 4.0  # a hand at 70 mm/s goes a tenth of a dot in 4 ms
-_HELD_PERIODS = 3  # poses that come so far apart, and none was lost, were held back
+_HELD_PERIODS = 3  # poses farther apart than that, of which none was lost, were held back
 _MOST_LATE = 0.01  # as a share of all ticks
 _MOST_FAULTS = 50  # of each kind: 1 % of some 5000 ticks
 _MOST_CLOCK = 0.02  # that a simple controller's clock may be off
@@ -204,7 +204,7 @@ def taking_parts(most: int = 5) -> Iterator[list[str]]:
     def part(key: object, data: Any) -> bytes:
         data, left = bytes(data), rest.pop(key, b"")
         if left and not data.startswith(left):
-            faults[:] = ["its write does not finish a message of which the line took a part"]
+            faults[:] = ["its write does not finish a message that the line took in part"]
         if not left and len(data) > most:
             rest[key] = data[most:]
             return data[:most]
@@ -223,7 +223,7 @@ def taking_parts(most: int = 5) -> Iterator[list[str]]:
 
 
 def finishes_parts(device: Device) -> list[str]:
-    """Clause on a driver that does not finish a frame of which the line took a part, if so."""
+    """Clause on a driver that does not finish a frame that the line took in part."""
     frame = np.zeros(device.display.shape)
     with taking_parts() as faults:
         for _ in range(2 * _PARTS):

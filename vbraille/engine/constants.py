@@ -22,4 +22,4 @@ REACH_MM: Final = 10.0
 # N poses and M velocities of Lévesque 2009, eqs. 9.4 and 9.5: the velocity is of 59 poses.
 DIFFERENCE: Final = 10
 MEAN: Final = 50
-APART_NS: Final = NS_PER_S // 2  # poses so far apart are no one movement
+APART_NS: Final = NS_PER_S // 2  # poses farther apart are two movements

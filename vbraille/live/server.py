@@ -294,7 +294,7 @@ def _secure(_connection: ServerConnection, _request: Request, response: Response
 
 
 def _limited() -> type[ServerConnection]:
-    """Make a class of connections of which there are only so many; others end at once.
+    """Make a class of connections with a largest number; those beyond it end at once.
 
     They would take the descriptors that reading needs, for the server is in the same process.
     """

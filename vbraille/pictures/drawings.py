@@ -33,7 +33,7 @@ _LINE_POINTS = 0.8
 # far as bars can go without touching; true deflections would be too small to be seen.
 _SHIFT = 0.3
 _CORNERS = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
-# Pixels that outlines are found from, of which the library takes three numbers of eight bytes.
+# Most pixels that outlines are found from; the library takes 24 bytes for each.
 _OUTLINE_PER_MM, _OUTLINE_PIXELS = 8.0, 2_500_000
 # Times over a swing of 50 Hz, the fastest that there is: what vibrates is up at one of them.
 _UP_S = (0.0, 0.005, 0.01, 0.015)

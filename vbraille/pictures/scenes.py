@@ -79,7 +79,7 @@ def map_places(
 def check_pixels(
     canvas: Canvas, pixels_per_mm: float, maps: int = 1, most: int = MOST_PIXELS["png"]
 ) -> tuple[int, int]:
-    """Compute the columns and rows of a map, if there is room for so many maps of it.
+    """Compute the columns and rows of a map, if there is room for all the maps.
 
     Parameters
     ----------

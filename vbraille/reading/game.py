@@ -263,7 +263,7 @@ class Game(Explored):
         self.say(f"{', '.join(points)}; {count(left, 'card')} left, {count(self.turns, 'turn')}")
 
     def again(self, players: int) -> None:
-        """Deal anew for so many players, unless a game is going on."""
+        """Deal again, for one player or two, unless a game is going on."""
         if (self.turns or self.up) and not self.over:
             self.refuse("this game is not over; q stops it")
             return

@@ -227,7 +227,7 @@ class Program:
 def head(
     display: Display, kind: ProgramKind, places: int, own_y_mm: float = 0.0
 ) -> NDArray[np.float64]:
-    """Make the numbers of a program that does not move by itself, with room for so many numbers."""
+    """Make the numbers of a program that does not move by itself, of a given size."""
     numbers = np.zeros(places)
     numbers[work.KIND] = kind
     numbers[work.OWN_Y] = own_y_mm

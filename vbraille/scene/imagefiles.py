@@ -154,7 +154,7 @@ def _intensities(
 
 
 def _smaller(image: Pillow.Image, shape: tuple[int, int]) -> Pillow.Image:
-    """Average pixels so that there are so many columns and rows."""
+    """Average pixels to a smaller number of columns and rows."""
     from PIL import Image
 
     return image if image.size == shape else image.resize(shape, Image.Resampling.BOX)

@@ -135,7 +135,7 @@ def size_mm(
 
 
 def shape_of(width_mm: float, height_mm: float, per_mm: float) -> tuple[int, int]:
-    """Columns and rows of a bitmap of a size with so many pixels per mm, or fewer if it is vast."""
+    """Columns and rows of a bitmap at a density in pixels per mm, or fewer if it is vast."""
     most = math.sqrt(MOST_PIXELS / (width_mm * height_mm))
     per_mm = min(per_mm, most)
     # A band of 10 m by 0.1 mm has a row, too.

@@ -59,7 +59,7 @@ def png_of(
     Returns
     -------
     bytes
-        A PNG file of so many columns and rows, clear where nothing is drawn.
+        A PNG file of these columns and rows, clear where nothing is drawn.
 
     Raises
     ------

@@ -43,7 +43,7 @@ class Setting(NamedTuple):
 
 
 class Catch(Table, frozen=True, kw_only=True):
-    """Trials that only keep watch: one of so many, or a share of all; and what they show."""
+    """Catch trials: one in every few, or a share of all; and what they show."""
 
     every: Annotated[int, Meta(ge=2, le=10_000)] | None = None
     share: Annotated[float, Meta(gt=0, le=0.5)] | None = None
