@@ -89,4 +89,4 @@ def test_a_driver_that_leaves_a_message_cut_is_told_of():
     with here, there:
         clock = ManualClock()
         found = check(Cutting(clock), clock, lambda _: None, rate_s=0.2)
-        assert any("took a part" in wrong for wrong in found.wrong)
+        assert any("does not finish a message" in wrong for wrong in found.wrong)
