@@ -14,7 +14,6 @@ from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import LocalEngine
 from vbraille.engine.ticks import POSE_X, POSED
 from vbraille.errors import InputError
-from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.wording import setting
 
@@ -52,7 +51,7 @@ class BatchEngine(LocalEngine):
         if poll_ticks < 1:
             raise ValueError(f"a poll does {poll_ticks} ticks; it must do 1 or more")
         hand = device.hand if isinstance(device, SimulatedDevice) else None
-        if not isinstance(device, SimulatedDevice) or hand is None or isinstance(hand, Recorded):
+        if not isinstance(device, SimulatedDevice) or hand is None or hand.goes_on:
             raise InputError(
                 f"{setting('fast')} needs a hand that reads lines: slow, fluent or sweep:SPEED"
             )
