@@ -71,8 +71,7 @@ class BatchEngine(LocalEngine):
             poses[:, column] = values
         self.clock.sleep_until_ns(int(due_ns[-1]))
         times_ns = np.repeat(due_ns[:, None], 2, axis=1)
-        taking = device.taking
-        self.advance(times_ns, poses, device.rested, taking, ring.columns, ring.slot)
+        self.advance(times_ns, poses)
         device.write(self.output)
         ring.publish(due_ns.size)
         return self._take()
