@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from vbraille.pictures.checking import check_scene
 from vbraille.pictures.index import SceneIndex
 from vbraille.pictures.loading import load_scene
 from vbraille.render import MODELS
 from vbraille.render.compiling import SceneMap
 from vbraille.scene.bounds import around
-from vbraille.scene.checking import check_scene
 from vbraille.scene.patterns import Circle, Polygon
 from vbraille.scene.signals import packed
 
@@ -34,7 +34,7 @@ def test_every_sample_is_one_of_these():
 @pytest.mark.parametrize("name", NAMES)
 def test_a_sample_has_no_remarks_but_those_that_are_meant(name):
     loaded = load(name)
-    report = check_scene(loaded.opened, loaded.boxes())
+    report = check_scene(loaded)
     remarks = [*loaded.notes, *report.advice]
     meant = MEANT.get(name, ())
     assert len(remarks) == len(meant)
