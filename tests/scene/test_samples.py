@@ -19,8 +19,15 @@ NAMES = (
     "house", "chart", "map", "world", "route", "prices", "triangle",
     "shapes-vibration", "shapes-dots", "shapes-gratings",
 )  # fmt: skip
-# The source's outlines of 1.5 mm are thinner than what its later chapters recommend.
-MEANT = {"shapes-vibration": ("has a stroke of 1.5 mm",)}
+DROWNS = "both are under one finger"
+# The source's outlines of 1.5 mm are thinner than what its later chapters recommend, and a chart's
+# bars, continents and shapes to compare stand close together.
+MEANT = {
+    "shapes-vibration": ("has a stroke of 1.5 mm", *4 * (DROWNS,)),
+    "chart": 3 * ("stands less than 2.5 mm",),
+    "map": ("label wood lies on element 3",),
+    "world": 2 * (DROWNS,),
+}
 
 
 def load(name):
