@@ -68,7 +68,7 @@ def test_lines_hold_all_the_text_once_and_each_leads_to_the_others(text, width, 
         assert made.beside(following, -1) == line
     assert made.beside(lines[-1]) is None
     assert made.beside(lines[0], -1) is None
-    assert (made.first(), made.last(), made.count()) == (lines[0], lines[-1], len(lines))
+    assert (made.line(1), made.last(), made.count()) == (lines[0], lines[-1], len(lines))
     assert made.line(0) is None
     assert made.line(len(lines) + 1) is None
     again = layout(text, width, table, keep_lines=keep_lines)
@@ -88,7 +88,7 @@ def test_a_place_is_on_its_line(place, width):
     assert start >= place or start <= place < after
     assert line.place <= max(place, start) < line.cells.end
     assert made.place(line.place)[0] == line
-    assert line.cell_of(start) == cell
+    assert made.place(start) == (line, cell)
     if ENGLISH.text[start].isalpha():
         assert ENGLISH.text[start] in line.word(cell)
 
