@@ -5,7 +5,6 @@ from vbraille.translate.blocks import Block, BlockKind, Mark, MarkKind
 from vbraille.translate.book import Book, Remarks, describe
 from vbraille.translate.formats import FORMATS, open_source, text_source
 from vbraille.translate.languages import TableInfo, find_table, has_tables, list_tables, tables_of
-from vbraille.translate.liblouis import liblouis_version
 from vbraille.translate.source import Heading, Source
 from vbraille.translate.spellings import Undefined
 from vbraille.translate.tables import BrailleTable, choose_table, six_dot_table, translate_text
@@ -28,7 +27,6 @@ __all__ = [
     "describe",
     "find_table",
     "has_tables",
-    "liblouis_version",
     "list_tables",
     "open_source",
     "six_dot_table",

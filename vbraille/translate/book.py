@@ -96,14 +96,12 @@ class Book:
             return Cells(own.masks, own.starts - int(own.starts[:1].sum()) + block.start, block.end)
         if self.table is None:
             raise ValueError(f"{self.source.name} has text in it; give its book a braille table")
-        written = Written(b"", [])
+        written = Written()
         for table, start, text, language in self._passages(block):
             part = table.write(text, cut_marks(block.marks, start, start + len(text)))
             if table is not self.table:
                 part = self._between_signs(part, language, block.text[start + len(text) :][:1])
-            written.masks += part.masks
-            written.places += [start + place for place in part.places]
-            written.otherwise += part.otherwise
+            written.add(part, start)
         if written.otherwise:
             self.otherwise[block.number] = written.otherwise
             self._note_script(block, written.otherwise)
