@@ -83,7 +83,7 @@ def _sentence() -> Result:
 def _frame() -> Result:
     from tests.reading.bench import Heard, NoKeyboard, book_of
     from vbraille.engine.record import Flag
-    from vbraille.layout.lines import cells_per_line
+    from vbraille.layout import cells_per_line
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.exploration import Exploration
     from vbraille.reading.places import Places

@@ -1,13 +1,6 @@
 """Cells on a virtual page: lines of any width, and files of them."""
 
-from vbraille.layout.lines import Layout, Line, cells_per_line, lay_out_text, wrap_text
-from vbraille.translate.book import Remarks
+from vbraille.layout.layout import Layout, cells_per_line, lay_out_text, wrap_text
+from vbraille.layout.lines import Line
 
-__all__ = [
-    "Layout",
-    "Line",
-    "Remarks",
-    "cells_per_line",
-    "lay_out_text",
-    "wrap_text",
-]
+__all__ = ["Layout", "Line", "cells_per_line", "lay_out_text", "wrap_text"]

@@ -6,6 +6,7 @@ A page is its rows from the top, and a row the dot masks of its cells from the l
 from __future__ import annotations
 
 import hashlib
+import re
 import uuid
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -15,19 +16,17 @@ import numpy as np
 
 from vbraille.braille.cells import Cells
 from vbraille.braille.spelling import to_braille
-from vbraille.layout.wrapping import wrap
+from vbraille.layout.lines import wrap
 from vbraille.translate.blocks import BlockKind
 from vbraille.translate.braillefiles import DUBLIN_CORE, PEF_NAMESPACE
-from vbraille.wording import printable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator
 
     from vbraille.translate.book import Book
 
-    Rows = Sequence[bytes]
-
 FORM_FEED, _BLANK = b"\f", b"\0"
+_NOT_XML = re.compile("[^\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def cut_pages(rows: Iterable[bytes], lines: int) -> Iterator[list[bytes]]:
@@ -37,7 +36,7 @@ def cut_pages(rows: Iterable[bytes], lines: int) -> Iterator[list[bytes]]:
         yield page
 
 
-def kept_pages(book: Book, width: int | None = None) -> Iterator[list[bytes]]:
+def kept_pages(book: Book, width: int | None = None) -> list[list[bytes]]:
     """Pages of a book that is in braille already, with the lines that its file has.
 
     Parameters
@@ -48,26 +47,20 @@ def kept_pages(book: Book, width: int | None = None) -> Iterator[list[bytes]]:
         Number of cells in a line, beyond which a line runs over, two cells in; None for lines of
         any width.
     """
-    page: list[bytes] | None = None
+    pages: list[list[bytes]] = []
     for block in book.source.blocks():
-        if block.kind is BlockKind.PAGE:
-            if page is not None:
-                yield page
-            page = []
-            continue
-        page = [] if page is None else page
-        masks = book.cells(block).masks.tobytes()
-        if width is None or len(masks) <= width:
-            page.append(masks)
-        else:
-            places = range(len(masks))
-            for piece in wrap(masks, places, block.text, width, 0, min(2, width // 2)):
-                page.append(bytes(piece.indent) + masks[piece.start : piece.stop])
-    if page is not None:
-        yield page
+        if block.kind is BlockKind.PAGE or not pages:
+            pages.append([])
+        cells = book.cells(block)
+        if width is not None and len(cells) > width:
+            lines = wrap(block, cells, width, (0, min(2, width // 2)))
+            pages[-1] += [line.masks.tobytes() for line in lines]
+        elif block.kind is not BlockKind.PAGE:
+            pages[-1].append(cells.masks.tobytes())
+    return pages
 
 
-def brf_pages(pages: Iterable[Rows]) -> Iterator[bytes]:
+def brf(pages: Iterable[Iterable[bytes]], end: bytes = FORM_FEED) -> Iterator[bytes]:
     """Write pages as BRF: each line ends with a line feed, and each page with a form feed.
 
     Characters are those from 0x20 to 0x5F, capitals among them, and no line ends in a blank.
@@ -78,19 +71,9 @@ def brf_pages(pages: Iterable[Rows]) -> Iterator[bytes]:
         If a cell has dot 7 or 8, which BRF cannot write.
     """
     for rows in pages:
-        yield brf_lines(rows) + FORM_FEED
-
-
-def brf_lines(rows: Iterable[bytes]) -> bytes:
-    """Write lines of cells as BRF, without the end of a page.
-
-    Raises
-    ------
-    ValueError
-        If a cell has dot 7 or 8, which BRF cannot write.
-    """
-    lines = (Cells.bare(np.frombuffer(row.rstrip(_BLANK), np.uint8)).to_brf() for row in rows)
-    return "".join(f"{line}\n" for line in lines).encode("ascii")
+        for row in rows:
+            yield Cells.bare(np.frombuffer(row.rstrip(_BLANK), np.uint8)).to_brf().encode() + b"\n"
+        yield end
 
 
 def identifier(sha256: str, *made_with: object) -> str:
@@ -100,7 +83,12 @@ def identifier(sha256: str, *made_with: object) -> str:
 
 
 def pef(
-    pages: Iterable[Rows], head: dict[str, str], columns: int, rows: int, *, rowgap: int = 0
+    pages: Iterable[Iterable[bytes]],
+    head: dict[str, str],
+    columns: int,
+    rows: int,
+    *,
+    rowgap: int = 0,
 ) -> Iterator[bytes]:
     """Write pages as PEF 2008-1, in one volume of one section, on one side of the paper.
 
@@ -117,7 +105,9 @@ def pef(
     """
     said = {"format": "application/x-pef+xml", **head}
     meta = "".join(
-        f"      <dc:{name}>{escaped(value)}</dc:{name}>\n" for name, value in said.items() if value
+        f"      <dc:{name}>{escape(_NOT_XML.sub('�', value))}</dc:{name}>\n"
+        for name, value in said.items()
+        if value
     )
     yield (
         f'<?xml version="1.0" encoding="UTF-8"?>\n<pef version="2008-1" xmlns="{PEF_NAMESPACE}">\n'
@@ -129,9 +119,3 @@ def pef(
         inner = "".join(f"          <row>{to_braille(row.rstrip(_BLANK))}</row>\n" for row in page)
         yield f"        <page>\n{inner}        </page>\n".encode()
     yield b"      </section>\n    </volume>\n  </body>\n</pef>\n"
-
-
-def escaped(text: str) -> str:
-    """Text as XML has it, with the control characters named that XML cannot have."""
-    plain = printable(" ".join(text.split())).encode("utf-8", "replace").decode()
-    return escape(plain.replace("\ufffe", "\ufffd").replace("\uffff", "\ufffd"), {'"': "&quot;"})

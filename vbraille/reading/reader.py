@@ -195,7 +195,7 @@ class Reader(Surface):
 
     def first_line(self) -> Line | None:
         """First line of those that are read."""
-        return self.layout.first() if self.first == 1 else self.layout.line(self.first)
+        return self.layout.line(self.first)
 
     def has(self, line: Line) -> bool:
         """Tell whether a line is among those that are read."""

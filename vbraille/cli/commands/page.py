@@ -108,22 +108,19 @@ def _printed(line: Line, form: str) -> str:
 
 def _write_kept(chosen: dict[str, Any], book: Book) -> None:
     """Write a book that is in braille already, with the lines and pages of its file."""
-    from vbraille.layout.writing import FORM_FEED, brf_lines, brf_pages, kept_pages, pef
+    from vbraille.layout.writing import FORM_FEED, brf, kept_pages, pef
     from vbraille.translate import BlockKind
     from vbraille.wording import count
 
     pages, said = kept_pages(book, chosen["cells"]), ""
-    first = book.source.block(0)
     if chosen["format"] == "pef":
-        found = list(pages)
-        cells = max([1, *(len(row) for page in found for row in page)])
-        lines = max([1, *(len(page) for page in found)])
-        content = pef(found, _head(book, cells, lines), cells, lines, rowgap=_rowgap(book))
-        said = f"pages: {count(len(found), 'page')} of {lines} lines, {cells} cells each"
-    elif first is not None and first.kind is BlockKind.PAGE:
-        content = brf_pages(pages)
+        cells = max([1, *(len(row) for page in pages for row in page)])
+        lines = max([1, *(len(page) for page in pages)])
+        content = pef(pages, _head(book, cells, lines), cells, lines, rowgap=_rowgap(book))
+        said = f"pages: {count(len(pages), 'page')} of {lines} lines, {cells} cells each"
     else:
-        content = (FORM_FEED * (made > 0) + brf_lines(rows) for made, rows in enumerate(pages))
+        first = book.source.block(0)
+        content = brf(pages, FORM_FEED if first and first.kind is BlockKind.PAGE else b"")
     _write(chosen, content)
     for note in (*book.notes(), *filter(None, [said])):
         say(note, aside=True)
