@@ -2,7 +2,7 @@
 
 from vbraille.braille.cells import Cells
 from vbraille.translate.blocks import Block, BlockKind, Mark, MarkKind
-from vbraille.translate.book import Book, Remarks, describe
+from vbraille.translate.book import Book, remarks
 from vbraille.translate.formats import FORMATS, open_source, text_source
 from vbraille.translate.languages import TableInfo, find_table, has_tables, list_tables, tables_of
 from vbraille.translate.source import Heading, Source
@@ -19,16 +19,15 @@ __all__ = [
     "Heading",
     "Mark",
     "MarkKind",
-    "Remarks",
     "Source",
     "TableInfo",
     "Undefined",
     "choose_table",
-    "describe",
     "find_table",
     "has_tables",
     "list_tables",
     "open_source",
+    "remarks",
     "six_dot_table",
     "tables_of",
     "text_source",
