@@ -118,6 +118,15 @@ class Button(Event, frozen=True):
     at_ns: int | None = None
 
 
+def moved(before: int, now: int, count: int, at_ns: int) -> list[Event]:
+    """Tell of the buttons whose bits differ, of the first so many."""
+    return [
+        Button(bit + 1, pressed=bool(now >> bit & 1), at_ns=at_ns)
+        for bit in range(count)
+        if (before ^ now) >> bit & 1
+    ]
+
+
 class Knob(Event, frozen=True):
     """A knob of the device was turned to a position from 0 to 1; knobs are counted from 1."""
 
