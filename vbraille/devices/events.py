@@ -275,13 +275,12 @@ def placing_sentence(placing: Placing, display: Display, *, press: str = "press 
     press
         How the reader says that the carriage is there.
     """
+    if placing is Placing.DONE:
+        return "place: known"
     left = "left to the stop"
     if display.height_mm:
         left = f"to {shown_place(display)}, with the array straight"
-    return {
-        Placing.DONE: "place: known",
-        Placing.STOP: f"place: move {left}, then {press}",
-    }[placing]
+    return f"place: move {left}, then {press}"
 
 
 class Throttle:
