@@ -211,7 +211,7 @@ def test_names_are_said_back_until_enter_or_the_same_key_takes_them(tmp_path):
     session = Session.create("orientation-coarse", "P01", path=tmp_path / "one.session", seed=1)
     sat = Sat(session).sit(
         ("cue: ", "3"), ("chosen: at-90", "1"), ("chosen: at-0", ""), ("cue: ", ""),
-        ("name is missing", "3"), ("chosen: at-90", "3"), ("cue: ", "stop"), hand="wide",
+        ("name is missing", "3"), ("chosen: at-90", "3"), ("cue: ", "stop"),
     )  # fmt: skip
     assert [event.data["answer"] for event in sat.of("answer")] == ["at-0", "at-90"]
 
