@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from vbraille.scene.traversal import Steps
 
 
-@dataclass(frozen=True, slots=True)
-class FoundScene:
+class FoundScene(NamedTuple):
     """Scene that a reader of a format of others gives back.
 
     Parameters
@@ -33,8 +32,8 @@ class FoundScene:
     """
 
     scene: Scene
-    lines: Mapping[Steps, int] = field(default_factory=dict)
-    warnings: tuple[str, ...] = ()
+    lines: Mapping[Steps, int]
+    warnings: tuple[str, ...]
 
 
 class ForeignFile(NamedTuple):
@@ -43,52 +42,18 @@ class ForeignFile(NamedTuple):
     where: str
     lines: Mapping[Steps, int]
 
-    def fail(self, steps: Steps, problem: str) -> NoReturn:
-        """Refuse the file for a problem at a place in the scene that it holds.
 
-        Raises
-        ------
-        InputError
-            In any case.
-        """
-        raise InputError(f"{_place(self, steps)}: {about(steps, problem)}")
-
-
-SceneSource = ForeignFile | TomlFile
-
-
-def _place(file: SceneSource, steps: Steps) -> str:
-    """Name of a file, and the line of the nearest thing around a place that has one."""
-    for depth in range(len(steps), 0, -1):
-        if steps[:depth] in file.lines:
-            return f"{file.where} line {file.lines[steps[:depth]]}"
-    return file.where
-
-
-@dataclass(frozen=True, slots=True)
-class Locations:
-    """Places where each element and named texture of a scene is written.
-
-    Parameters
-    ----------
-    places
-        Files, and places in them, by places of the scene.
-    """
-
-    places: dict[Steps, tuple[SceneSource, Steps]] = field(default_factory=dict)
-
-    def of(self, steps: Steps) -> tuple[SceneSource, Steps] | None:
-        """File that a place of the scene comes from, and the place in that file."""
-        for depth in range(len(steps), 0, -1):
-            if steps[:depth] in self.places:
-                file, there = self.places[steps[:depth]]
-                return file, (*there, *steps[depth:])
-        return None
+class Locations(dict["Steps", "tuple[ForeignFile | TomlFile, Steps]"]):
+    """Files, and places in them, of the elements, textures and signals of a scene."""
 
     def place(self, steps: Steps) -> str:
         """File and line of a place of the scene, or words for it if it comes from no file."""
-        found = self.of(steps)
-        return said(steps) if found is None else _place(*found)
+        file, there = self._of(steps)
+        if file is None:
+            return said(steps)
+        while there and there not in file.lines:
+            there = there[:-1]
+        return f"{file.where} line {file.lines[there]}" if there else file.where
 
     def fail(self, steps: Steps, problem: str) -> NoReturn:
         """Refuse the scene for a problem at a place in it, with the file and the line.
@@ -98,11 +63,19 @@ class Locations:
         InputError
             In any case.
         """
-        found = self.of(steps)
-        if found is None:
-            raise InputError(about(steps, problem))
-        file, there = found
-        file.fail(there, problem)
+        file, there = self._of(steps)
+        if isinstance(file, TomlFile):
+            file.fail(there, problem)
+        about = f"{said(there)}{'' if problem.startswith(':') else ' '}{problem}"
+        raise InputError(f"{self.place(steps)}: {about}" if file else about)
+
+    def _of(self, steps: Steps) -> tuple[ForeignFile | TomlFile | None, Steps]:
+        """File that a place of the scene comes from, and the place in that file."""
+        for depth in range(len(steps), 0, -1):
+            if steps[:depth] in self:
+                file, there = self[steps[:depth]]
+                return file, (*there, *steps[depth:])
+        return None, steps
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +103,7 @@ class OpenedScene:
     folder: Path
     written: Scene
     resolved: Scene
-    locations: Locations
+    locations: Locations = field(default_factory=Locations)
     warnings: tuple[str, ...] = ()
 
     @property
@@ -151,12 +124,3 @@ def said(steps: Steps) -> str:
     """
     words = (f", number {step + 1}" if isinstance(step, int) else f" {step}" for step in steps)
     return "".join(words).strip()
-
-
-def about(steps: Steps, problem: str) -> str:
-    """Sentence about a place in a scene; the problem begins with a colon or a verb.
-
-    >>> about(("elements", 0), "has no place")
-    'elements, number 1 has no place'
-    """
-    return f"{said(steps)}{problem}" if problem.startswith(":") else f"{said(steps)} {problem}"
