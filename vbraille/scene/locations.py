@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
@@ -14,6 +15,8 @@ if TYPE_CHECKING:
 
     from vbraille.scene.scene import Scene
     from vbraille.scene.traversal import Steps
+
+_MOST_LINES = 5  # that one remark names
 
 
 class FoundScene(NamedTuple):
@@ -34,6 +37,37 @@ class FoundScene(NamedTuple):
     scene: Scene
     lines: Mapping[Steps, int]
     warnings: tuple[str, ...]
+
+
+class Remarks:
+    """What is said of a file of another format, with the lines and elements for which it holds."""
+
+    def __init__(self) -> None:
+        self._places: dict[str, list[tuple[int, str]]] = defaultdict(list)
+
+    def note(self, remark: str, line: int, name: str) -> None:
+        """Keep a remark on an element, by its line and its name."""
+        self._places[remark].append((line, name))
+
+    def said(self) -> tuple[str, ...]:
+        """All remarks by their first lines, each once.
+
+        >>> remarks = Remarks()
+        >>> for line in (9, 4):
+        ...     remarks.note("its icon is ignored", line, "Circle")
+        >>> remarks.said()
+        ('line 4, Circle: its icon is ignored (and line 9)',)
+        """
+        sentences: list[str] = []
+        for remark, places in sorted(self._places.items(), key=lambda one: min(one[1])):
+            line, name = min(places)
+            others = sorted({other for other, _ in places} - {line})
+            more = len(others) - _MOST_LINES
+            listed = ", ".join(map(str, others[:_MOST_LINES]))
+            rest = f" and {more} more" if more > 0 else ""
+            also = f" (and line{'s' if others[1:] else ''} {listed}{rest})" if others else ""
+            sentences.append(f"line {line}, {name}: {remark}{also}")
+        return tuple(sentences)
 
 
 class ForeignFile(NamedTuple):
