@@ -16,16 +16,24 @@ if TYPE_CHECKING:
 
 
 class Undefined(StrEnum):
-    """Text for a character that neither the table nor a plain spelling can write."""
+    """Text for a character that neither the table nor a plain spelling can write.
+
+    Attributes
+    ----------
+    MARK
+        A sign for an unknown character; emoji by their names.
+    NAME
+        Its name in brackets.
+    CODE
+        Its number in brackets.
+    DROP
+        Nothing.
+    """
 
     MARK = "mark"
-    """A sign for an unknown character; emoji by their names."""
     NAME = "name"
-    """Its name in brackets."""
     CODE = "code"
-    """Its number in brackets."""
     DROP = "drop"
-    """Nothing."""
 
 
 class Kind(StrEnum):
