@@ -25,8 +25,7 @@ class Placing(IntEnum):
     """Act that a device waits for before it knows where its carriage is."""
 
     DONE = 0  # nothing: it knows
-    MARK = 1  # the reader moves the carriage over the encoder's mark
-    STOP = 2  # the reader moves it to the left stop and presses a key: `Device.set_zero`
+    STOP = 1  # the reader moves it to the left stop and presses a key: `Device.set_zero`
 
 
 class Event(msgspec.Struct, frozen=True, tag=True):
@@ -272,7 +271,6 @@ def placing_sentence(placing: Placing, display: Display, *, press: str = "press 
         left = f"to {shown_place(display)}, with the array straight"
     return {
         Placing.DONE: "place: known",
-        Placing.MARK: "place: move the carriage over its mark",
         Placing.STOP: f"place: move {left}, then {press}",
     }[placing]
 

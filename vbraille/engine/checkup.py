@@ -263,14 +263,11 @@ class _Check:
     def _wait_for_place(self) -> None:
         """Wait for any place, or a wrong one: frames are not taken without one."""
         device, clock = self._device, self._clock
-        begun_ns, asked = clock.now_ns(), False
+        begun_ns = clock.now_ns()
         while device.read() is None and not self._watch.found:
             if device.placing is Placing.STOP and not self._shown:
                 device.set_zero()
                 self._shown = True
-            elif device.placing is Placing.MARK and not asked:
-                asked = True
-                self._say("place: move the carriage over its mark")
             if clock.now_ns() - begun_ns > _PLACE_S * NS_PER_S:
                 raise DeviceError(f"{device.display.name} gives no place; look at its encoder")
             clock.sleep_until_ns(clock.now_ns() + 1_000_000)

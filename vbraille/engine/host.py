@@ -21,7 +21,7 @@ from vbraille.devices.events import Back, Stalled, from_json
 from vbraille.devices.registry import find_driver
 from vbraille.display import Display
 from vbraille.engine.engine import EndOfLine, Watcher
-from vbraille.engine.record import RingReader, Tally
+from vbraille.engine.record import RingReader
 from vbraille.errors import DeviceError, InputError, VbrailleError
 from vbraille.files import open_memory, settings_path
 from vbraille.logs import kept
@@ -190,11 +190,6 @@ class Host(Watcher):
         if self._display is None:
             raise DeviceError("no device is open; start the host first")
         return self._display
-
-    @property
-    def tally(self) -> Tally:
-        """Counts of what the loop has done since the last start, up to the last poll."""
-        return Tally() if self.newest is None else Tally.of(self.newest)
 
     @property
     def paused(self) -> bool:
