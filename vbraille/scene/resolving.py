@@ -170,7 +170,7 @@ class _Resolving:
         if isinstance(pattern, Use):
             return self._used(pattern, steps, depth)
         if isinstance(pattern, ImageDots):
-            from vbraille.scene.blobs import dots_of  # loads the reading of images
+            from vbraille.scene.images import dots_of  # loads the reading of images
 
             try:
                 return dots_of(pattern, self._folder)

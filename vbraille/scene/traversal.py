@@ -13,7 +13,7 @@ from vbraille.scene.strokes import Vibration
 from vbraille.scene.textures import SignalLevel, UniformVibration
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from vbraille.scene.measures import Point, RidgeWave
     from vbraille.scene.patterns import AnyPattern
@@ -93,6 +93,30 @@ def placed_children(pattern: AnyPattern) -> list[tuple[Steps, AnyPattern]]:
 def children(pattern: AnyPattern) -> list[AnyPattern]:
     """Patterns that stand directly in a pattern, in the order in which they are written."""
     return [part for _, part in placed_children(pattern)]
+
+
+def lines_of(
+    elements: Iterable[AnyPattern], made: Mapping[int, tuple[AnyPattern, int]]
+) -> dict[Steps, int]:
+    """Lines of the elements of a scene, and of what stands in them, by the keys that lead to them.
+
+    Parameters
+    ----------
+    elements
+        The elements.
+    made
+        Patterns that have a line, with that, by their ids.
+    """
+    lines: dict[Steps, int] = {}
+    left: list[tuple[Steps, AnyPattern]] = [
+        (("elements", n), one) for n, one in enumerate(elements)
+    ]
+    while left:
+        steps, pattern = left.pop()
+        if id(pattern) in made:
+            lines[steps] = made[id(pattern)][1]
+        left += [((*steps, *more), part) for more, part in placed_children(pattern)]
+    return lines
 
 
 def mapped(pattern: AnyPattern, change: Callable[[AnyPattern], AnyPattern]) -> AnyPattern:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
+from vbraille.scene.locations import Remarks
 from vbraille.scene.measures import LEAST_FREQUENCY_HZ, MOST_FREQUENCY_HZ, MOST_MM
 from vbraille.scene.openlatero.table import rows_of
 from vbraille.scene.signals import MOST_SIGNALS
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 MOST_BYTES = 20_000_000
 MOST_ELEMENTS = 200_000
 _MOST_FAULTS = 5  # of broken XML that are said
-_MOST_LINES = 5  # that one remark names, when it holds for many places
 _LONGEST = 40  # characters of a quoted text
 
 # Kinds of elements of which there may be several, and what each of them is.
@@ -67,7 +67,7 @@ class Context:
     as_shown
         Whether the picture is to be as OpenLatero shows it, where that is not what the file says.
     remarks
-        Lines of the file by the element, such as "Circle", and the sentence that is said about it.
+        What is said about the file.
     signals
         Signals of the scene, as they come.
     made
@@ -76,7 +76,7 @@ class Context:
 
     folder: Path
     as_shown: bool
-    remarks: dict[tuple[str, str], list[int]] = field(default_factory=lambda: defaultdict(list))
+    remarks: Remarks = field(default_factory=Remarks)
     signals: dict[str, AnySignal] = field(default_factory=dict)
     made: dict[int, tuple[AnyPattern, int]] = field(default_factory=dict)
 
@@ -100,20 +100,6 @@ class Context:
         if not self.as_shown or period_us < 1:
             return rate
         return math.copysign(1e6 * cycle / period_us, rate)
-
-    def said(self) -> tuple[str, ...]:
-        """All remarks, by their first lines; what holds at many places is said once."""
-        found = sorted((sorted(set(lines)), *key) for key, lines in self.remarks.items())
-        sentences: list[str] = []
-        for (first, *others), element, text in found:
-            sentence = f"line {first}, {element}: {text}"
-            if others:
-                named = ", ".join(map(str, others[:_MOST_LINES]))
-                more = len(others) - _MOST_LINES
-                rest = f" and {more} more" if more > 0 else ""
-                sentence += f" (and line{'s' if others[1:] else ''} {named}{rest})"
-            sentences.append(sentence)
-        return tuple(sentences)
 
 
 class Element:
@@ -226,7 +212,7 @@ class Element:
 
     def say(self, text: str) -> None:
         """Say something about the pattern, at the line of this element."""
-        self.context.remarks[self.owner, text].append(self.line)
+        self.context.remarks.note(text, self.line, self.owner)
 
     def _pass_over(self, name: str, written: list[Any], text: str) -> None:
         for xml in written:
@@ -365,5 +351,5 @@ def read_root(content: bytes, name: str, context: Context) -> Element:
         raise InputError(f"{name} has more than {MOST_ELEMENTS} elements; split the picture in two")
     for fault in parser.error_log[:_MOST_FAULTS]:
         said = f"it is broken here, and read as far as it can be: {printable(fault.message)}"
-        context.remarks["XML", said].append(fault.line)
+        context.remarks.note(said, fault.line, "XML")
     return Element(root, context, None, "file", "file")

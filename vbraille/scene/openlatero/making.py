@@ -15,7 +15,7 @@ from msgspec.structs import replace
 
 from vbraille.errors import InputError, needing_extras
 from vbraille.scene.dotting import rows_of
-from vbraille.scene.imagefiles import intensities_of
+from vbraille.scene.imagefiles import ImageFile
 from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.joints import joints, rounding_radius_mm
 from vbraille.scene.measures import LEAST_MM, MOST_MM
@@ -281,18 +281,13 @@ def _masked(mask: Element) -> Image | None:
         file.say(f"{name} is not there, and {beside} beside this file is taken")
         name = beside
     channel = "alpha" if file.attribute("type") == "alpha" else "gray"
-    columns = rows = 0
-
-    def seen(wide: int, high: int, _: object) -> tuple[int, int]:
-        nonlocal columns, rows
-        columns, rows = wide, high
-        return 1, 1
-
     try:
-        intensities_of(context.folder / name, channel, seen)
+        picture = ImageFile(context.folder / name)
+        picture.intensities(channel, 1, 1)
     except (InputError, OSError, ValueError) as error:
         file.say(f"its picture is left out: {_in(context.folder, error)}")
         return None
+    columns, rows = picture.columns, picture.rows
     # Usually the largest size that fits on the surface in the picture's shape.
     high = min(SURFACE_MM[1], SURFACE_MM[0] * rows / columns)
     fitting = (high * columns / rows, high)

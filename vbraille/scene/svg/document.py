@@ -21,7 +21,7 @@ _XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
 MOST_BYTES = 50 << 20
 MOST_ELEMENTS = 50_000
 _PIECE = 1 << 16
-_LONGEST_NAME, _LONGEST_TEXT = 200, 2000
+_LONGEST_NAME, LONGEST_TEXT = 200, 2000
 # Ids that programs give by themselves say nothing, and are the same in many drawings.
 _GIVEN = re.compile(
     r"(?:svg|g|layer|path|rect|circle|ellipse|line|poly(?:gon|line)|text|tspan|use|image|symbol"
@@ -131,7 +131,7 @@ def title_of(element: Element) -> str:
 
 def description_of(element: Element) -> str:
     """Description of an element; empty for none."""
-    return _said(element, "desc", _LONGEST_TEXT)
+    return _said(element, "desc", LONGEST_TEXT)
 
 
 def _said(element: Element, name: str, most: int) -> str:
