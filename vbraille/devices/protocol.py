@@ -141,12 +141,12 @@ def read_info(text: bytes) -> Info:
     return msgspec.structs.replace(info, name=name, serial=serial)
 
 
-def info_pieces(info: dict[str, object], version: int = VERSION) -> list[bytes]:
+def info_pieces(info: dict[str, object]) -> list[bytes]:
     """Bodies of the INFO messages that say this."""
     text = json.dumps(info, separators=(",", ":"), ensure_ascii=False).encode()
     pieces = [text[at : at + PIECE_BYTES] for at in range(0, len(text), PIECE_BYTES)]
     return [
-        bytes((INFO, version, number, len(pieces))) + piece for number, piece in enumerate(pieces)
+        bytes((INFO, VERSION, number, len(pieces))) + piece for number, piece in enumerate(pieces)
     ]
 
 
