@@ -89,7 +89,7 @@ class Info(msgspec.Struct, frozen=True):
         if not -(-self.top // 20) <= self.fast <= self.top:
             raise ValueError("`fast` is less than a twentieth of `top`, or more than `top`")
         if 1000 % self.rate:
-            raise ValueError("`rate` does not divide 1000")
+            raise ValueError(f"`rate` is {self.rate}, which does not divide 1000")
         if len(self.counts_per_mm) != len(self.travel_mm) or 0 in self.counts_per_mm:
             raise ValueError("`counts_per_mm` needs a number other than 0 for each of `travel_mm`")
 

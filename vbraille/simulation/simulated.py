@@ -54,7 +54,7 @@ class SimulatedDevice(Device):
     hand
         Hand that moves the carriage, as `obey` is told; `move` moves it as well.
     presses
-        Presses of its buttons, in seconds since the device was opened; `press`, `let_go` and
+        Presses of its buttons, in seconds since the device was opened; `press` and
         `turn` do more of the same at once.
 
     Attributes
@@ -98,10 +98,6 @@ class SimulatedDevice(Device):
         """Press a button, 1 to 8, or let it go."""
         check_range("button", button, 1, MOST_BUTTONS)
         self._events.append(Button(button, pressed=pressed, at_ns=self._now_ns()))
-
-    def let_go(self, button: int) -> None:
-        """Let go of a button, 1 to 8."""
-        self.press(button, pressed=False)
 
     def turn(self, knob: int, value: float) -> None:
         """Turn a knob, counted from 1, to a position from 0 to 1."""
