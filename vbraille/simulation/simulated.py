@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qsl
 
 import numpy as np
+from msgspec.structs import replace
 
 from vbraille.devices.base import Device
 from vbraille.devices.events import Button, HandDone, HandHeld, Knob
@@ -14,7 +15,7 @@ from vbraille.display import Pose
 from vbraille.errors import InputError, check_range
 from vbraille.simulation.carriage import Carriage
 from vbraille.simulation.controls import MOST_BUTTONS, Controls, parse_moves
-from vbraille.simulation.hand import STILL_S, Area, Still
+from vbraille.simulation.hand import STILL_S, Still
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.steering import GlideTo, Hold, LetGo, ReadLine, ReadPage
 from vbraille.wording import setting
@@ -172,8 +173,7 @@ class SimulatedDevice(Device):
         elif hand is not None and isinstance(order, ReadLine):
             self.move(hand.read_line(home_mm, order.end_mm))
         elif hand is not None and isinstance(order, ReadPage):
-            area = Area(order.lines, order.pitch_mm, home_mm, order.end_mm, order.foot_mm)
-            self.move(hand.read_page(area))
+            self.move(hand.read_page(replace(order, start_mm=home_mm)))
 
     def move(self, motion: Motion) -> None:
         """Move the hand along a motion from now on; it first goes to where the motion begins."""

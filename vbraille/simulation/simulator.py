@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from vbraille.display import Display
-    from vbraille.simulation.hand import Area, Hand
+    from vbraille.simulation.hand import Hand
     from vbraille.simulation.pty import Port
+    from vbraille.simulation.steering import Area
 
 _NS_PER_S: Final = 1_000_000_000
 _NS_PER_US: Final = 1000
