@@ -434,19 +434,11 @@ class LateroDevice(Device):
 
     @property
     def particulars(self) -> Particulars | None:  # type: ignore[override]
-        """Versions by its status words, and where its encoders are at angle 0."""
-        if self.answer is None:
-            return None
-        controller, interface = (
-            f"{status >> 8 & 0xF}.{status >> 4 & 0xF}"
-            for status in (self.answer.controller, self.answer.interface)
-        )
+        """Tell where its encoders are at angle 0."""
         where = "its offsets are unknown until it is shown its lower left corner"
         if self._offsets is not None:
             where = f"offsets={','.join(map(str, self._offsets))}"
-        return Particulars(
-            f"latero, controller {controller}, I/O interface {interface}, {where}", buttons=2
-        )
+        return Particulars(f"latero, {where}", buttons=2)
 
     @property
     def tripped_ms(self) -> float | None:  # type: ignore[override]
