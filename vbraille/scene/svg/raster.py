@@ -47,9 +47,9 @@ class RasterDrawing:
     Attributes
     ----------
     size_mm : tuple of float
-        Its width and height.
+        Width and height, which an SVG file has itself.
     columns, rows : int
-        Its width and height in fine steps.
+        Width and height in fine steps.
 
     Raises
     ------
