@@ -10,8 +10,8 @@ from vbraille.engine.record import FLOATS, INTS
 from vbraille.engine.ticks import replay
 from vbraille.render import MODELS, work
 from vbraille.render.compiling import SceneMap, compile_scene
+from vbraille.scene.patterns import Uniform
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.textures import Uniform
 
 
 def compile_all() -> None:
