@@ -27,7 +27,7 @@ from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import Shown, make_shown, width_mm
 from vbraille.sessions.planning.trial import Stimulus
 from vbraille.sessions.running.presenter import Happening, Presenter
-from vbraille.sessions.simulated.skin import FeltFrames
+from vbraille.sessions.simulated.observer import FeltFrames
 from vbraille.simulation import steering
 from vbraille.simulation.specs import device_spec, is_simulated
 from vbraille.wording import setting
