@@ -19,13 +19,13 @@ from cobs import cobs
 
 from vbraille.devices.events import (
     Back,
-    Button,
     Event,
     Knob,
     Notice,
     Silent,
     SlowActuators,
     WatchdogTripped,
+    moved,
 )
 from vbraille.display import Display, Pose
 from vbraille.errors import DeviceError
@@ -61,26 +61,24 @@ _STATE: Final = struct.Struct("<BHIiiiHB")  # without what `State.others` has
 _NUMBERED: Final = struct.Struct("<BH")
 
 _Text = Annotated[str, msgspec.Meta(max_length=200)]
-_Pitch = Annotated[float, msgspec.Meta(ge=0.05, le=50)]
-_Travel = Annotated[float, msgspec.Meta(gt=0, le=10_000)]
-_Counts = Annotated[float, msgspec.Meta(ge=-1e6, le=1e6)]
+_Axes = msgspec.Meta(min_length=1, max_length=2)
 
 
 class Info(msgspec.Struct, frozen=True):
     """Description of a device by itself: the keys of INFO, which the protocol's page describes."""
 
     name: Annotated[str, msgspec.Meta(min_length=1, max_length=200)]
-    rows: Annotated[int, msgspec.Meta(ge=1, le=MOST_ACTUATORS)]
-    columns: Annotated[int, msgspec.Meta(ge=1, le=MOST_ACTUATORS)]
-    pitch_mm: tuple[_Pitch, _Pitch]
+    rows: int
+    columns: int
+    pitch_mm: tuple[float, float]
     rest: Literal["left", "right"]
     top: Annotated[int, msgspec.Meta(ge=1, le=1023)]
-    fast: Annotated[int, msgspec.Meta(ge=1, le=1023)]
+    fast: int
     rate: Annotated[int, msgspec.Meta(ge=50, le=1000)]
-    counts_per_mm: Annotated[list[_Counts], msgspec.Meta(min_length=1, max_length=2)]
-    travel_mm: Annotated[list[_Travel], msgspec.Meta(min_length=1, max_length=2)]
+    counts_per_mm: Annotated[list[float], _Axes]
+    travel_mm: Annotated[list[Annotated[float, msgspec.Meta(le=10_000)]], _Axes]
     serial: _Text = ""
-    counts_per_turn: _Counts = 0
+    counts_per_turn: float = 0
     buttons: Annotated[int, msgspec.Meta(ge=0, le=8)] = 0
     knobs: Annotated[int, msgspec.Meta(ge=0, le=4)] = 0
     analog: Annotated[list[_Text], msgspec.Meta(max_length=8)] = []
@@ -91,7 +89,7 @@ class Info(msgspec.Struct, frozen=True):
         if not -(-self.top // 20) <= self.fast <= self.top:
             raise ValueError("`fast` is less than a twentieth of `top`, or more than `top`")
         if 1000 % self.rate:
-            raise ValueError("`rate` does not divide 1000")
+            raise ValueError(f"`rate` is {self.rate}, which does not divide 1000")
         if len(self.counts_per_mm) != len(self.travel_mm) or 0 in self.counts_per_mm:
             raise ValueError("`counts_per_mm` needs a number other than 0 for each of `travel_mm`")
 
@@ -143,12 +141,12 @@ def read_info(text: bytes) -> Info:
     return msgspec.structs.replace(info, name=name, serial=serial)
 
 
-def info_pieces(info: dict[str, object], version: int = VERSION) -> list[bytes]:
+def info_pieces(info: dict[str, object]) -> list[bytes]:
     """Bodies of the INFO messages that say this."""
     text = json.dumps(info, separators=(",", ":"), ensure_ascii=False).encode()
     pieces = [text[at : at + PIECE_BYTES] for at in range(0, len(text), PIECE_BYTES)]
     return [
-        bytes((INFO, version, number, len(pieces))) + piece for number, piece in enumerate(pieces)
+        bytes((INFO, VERSION, number, len(pieces))) + piece for number, piece in enumerate(pieces)
     ]
 
 
@@ -511,10 +509,7 @@ class Conversation:
         """Tell of buttons that are pressed now and were not, or the other way round."""
         before = buttons if self._buttons is None else self._buttons
         self._buttons = buttons
-        for bit in range(self.info.buttons if self.info else 0):
-            if (before ^ buttons) >> bit & 1:
-                pressed = bool(buttons >> bit & 1)
-                self.events.append(Button(bit + 1, pressed, at_ns=now_ns))
+        self.events += moved(before, buttons, self.info.buttons if self.info else 0, now_ns)
 
     def _follow(self, state: State, now_ns: int) -> None:
         """Go from stage to stage by what a STATE says."""

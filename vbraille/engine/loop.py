@@ -16,7 +16,7 @@ from vbraille.engine.constants import (
     NS_PER_S,
     STEP_NS,
 )
-from vbraille.engine.engine import EndOfLine, Watcher
+from vbraille.engine.engine import Watcher
 from vbraille.engine.record import FLAGS, FLOATS, INTS, LATE, LATENESS, WORK, Flag, Ring
 from vbraille.engine.ticks import POSE_THETA, POSE_X, POSE_Y, POSED
 from vbraille.errors import DeviceError, check_range
@@ -245,16 +245,12 @@ class Loop:
 
     def _nowhere(self) -> DeviceError:
         x_mm, y_mm, theta_rad = self._pose[POSE_X:]
-        display = self.device.display
-        where = f"{x_mm} mm along x, {y_mm} mm along y, turned by {theta_rad} rad"
-        says = f"{display.name} says that its carriage is at {where}"
-        if not np.isfinite(self._pose[POSE_X:]).all():
-            why = "its driver must give numbers, or None as long as it knows none"
-        elif theta_rad and not display.turns:
-            why = "its driver must give Display turns=True, or Pose no angle"
-        else:
-            why = "switch it off and on, and look at its encoder with 'vbraille device check'"
-        return DeviceError(f"{says}, where it cannot be; {why}")
+        return DeviceError(
+            f"{self.device.display.name} says that its carriage is at {x_mm} mm along x, {y_mm} mm "
+            f"along y, turned by {theta_rad} rad, where it cannot be; look at its encoder with "
+            f"'vbraille device check', or at its driver, which must give numbers, and an angle "
+            f"only where its Display turns"
+        )
 
     def restart_clock(self) -> None:
         """Make the next tick due now, after a time in which the loop did not run."""
@@ -328,8 +324,7 @@ class LocalEngine(Loop, Watcher):
     def show(self, picture: Program, line: int, end_mm: float | None = None) -> None:
         """Put another picture under the hand; see `vbraille.engine.host.Host.show`."""
         super().show(picture, line)
-        self._line = line
-        self._end = None if end_mm is None else EndOfLine(self.display.span_mm, end_mm)
+        self.wait_for(line, end_mm, self.display)
 
     def give(self, order: HandOrder) -> None:
         """Tell a simulated hand what to do; nothing happens where a person moves the device."""
