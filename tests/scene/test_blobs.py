@@ -9,7 +9,7 @@ from PIL import Image as Pillow
 from vbraille.errors import InputError
 from vbraille.scene.images import dots_of
 from vbraille.scene.patterns import Dots, DotStyle, Group, ImageDots, Vibration
-from vbraille.scene.resolving import resolve
+from vbraille.scene.reading import resolve
 from vbraille.scene.scene import Canvas, Scene
 
 

@@ -17,7 +17,7 @@ from vbraille.scene.patterns import (
     Use,
     Vibration,
 )
-from vbraille.scene.resolving import resolve
+from vbraille.scene.reading import resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.stock import STOCK, stock_text, stock_textures
 from vbraille.scene.traversal import mapped

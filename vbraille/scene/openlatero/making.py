@@ -15,7 +15,7 @@ from msgspec.structs import replace
 
 from vbraille.errors import InputError, needing_extras
 from vbraille.scene.geometry import joints, rounding_radius_mm, rows_of
-from vbraille.scene.imagefiles import ImageFile
+from vbraille.scene.images import ImageFile
 from vbraille.scene.measures import LEAST_MM, MOST_MM
 from vbraille.scene.openlatero.elements import Element
 from vbraille.scene.patterns import (
