@@ -391,7 +391,7 @@ def dots_of(pattern: ImageDots, folder: Path) -> AnyPattern:
     ------
     InputError
         If the file cannot be read, nothing in it is above the threshold, there are more than
-        20,000 dots, dots overlap, which they may not (6.3.1), or one is farther away than 10 m.
+        20,000 dots, or one is farther away than 10 m.
     """
     read = _read(pattern, folder, MOST_PER_MM)
     try:
@@ -401,7 +401,6 @@ def dots_of(pattern: ImageDots, folder: Path) -> AnyPattern:
                 "no dot: nothing in its image is above the threshold of "
                 f"{pattern.threshold:g}; make that smaller"
             )
-        _refuse_overlap(dots)
         return _drawn(pattern, dots)
     except ValueError as error:
         raise InputError(f"{_named(pattern)} has {error}") from None
@@ -460,23 +459,6 @@ def _check_count(count: int, what: str) -> None:
         raise ValueError(
             f"{count} {what}, and no more than {MOST_DOTS} can be dots; take a simpler image"
         )
-
-
-def _refuse_overlap(dots: list[_Dot]) -> None:
-    """Refuse dots that overlap; the larger look for smaller ones, so that none looks far."""
-    with needing_extras():
-        from scipy.spatial import KDTree
-    tree = KDTree([dot.center_mm for dot in dots])
-    for dot in dots:
-        for near in tree.query_ball_point(dot.center_mm, 2 * dot.radius_mm):
-            other = dots[near]
-            apart = math.dist(dot.center_mm, other.center_mm)
-            if other is not dot and apart < dot.radius_mm + other.radius_mm - _RADIUS_MM:
-                (x, y), (x2, y2) = dot.center_mm, other.center_mm
-                raise ValueError(
-                    f"dots that overlap, at {x:.1f}, {y:.1f} mm and at {x2:.1f}, {y2:.1f} mm; "
-                    "draw them farther apart, or make them smaller"
-                )
 
 
 def _drawn(pattern: ImageDots, dots: list[_Dot]) -> AnyPattern:

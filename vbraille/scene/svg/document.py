@@ -157,7 +157,7 @@ PX_MM = 25.4 / 96
 _UNITS = {"": 1.0, "px": 1.0, "pt": 96 / 72, "pc": 16.0, "mm": 96 / 25.4, "cm": 960 / 25.4,
           "in": 96.0, "q": 24 / 25.4, "rem": 16.0,
           "deg": 1.0, "grad": 0.9, "rad": 180 / math.pi, "turn": 360.0}  # fmt: skip
-_OF_LETTERS = {"em": 1.0, "ex": 0.5, "ch": 0.5}
+_OF_LETTERS = {"em": 1.0, "ic": 1.0, "ex": 0.5, "ch": 0.5}
 # Percentages of the page: its width, its height, and the smaller and the larger of these.
 _OF_PAGE = {"vw": 0, "vi": 0, "vh": 1, "vb": 1, "vmin": 2, "vmax": 3}
 _FUNCTIONS: dict[str, Callable[..., float]] = {
