@@ -10,11 +10,13 @@ import numpy as np
 from tests.benchmarks.timing import Result, ratio
 from tests.conftest import SEED, TEXTS
 from tests.shown import rendered
-from vbraille.engine.record import columns_of, tick_dtype
-from vbraille.engine.state import LoopState
+from vbraille.engine.clock import ManualClock
+from vbraille.engine.loop import Loop
+from vbraille.engine.record import Ring
 from vbraille.engine.ticks import POSE_X, POSE_Y, POSED
 from vbraille.layout import Layout
 from vbraille.render import STRESS2
+from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.translate import Book, BrailleTable, text_source
 
 if TYPE_CHECKING:
@@ -113,16 +115,16 @@ def page_against_line(random: np.random.Generator) -> tuple[float, float]:
     poses[:, POSED] = 1.0
     poses[:, POSE_X] = end_mm * np.abs((n * 2 * LINES / TICKS) % 2 - 1)
     poses[:, POSE_Y] = height_mm * n / TICKS
-    records = columns_of(np.zeros(TICKS, tick_dtype(display.shape)))
 
     def ticks_of(program: Program) -> Callable[[], object]:
-        state = LoopState(display, 1000.0, 0)
-        state.show(program, 1)
+        ring = Ring.alone(display.shape, TICKS)
+        loop = Loop(SimulatedDevice(display), ManualClock(), ring=ring)
+        loop.show(program, 1)
         times_ns = np.repeat(n[:, None] * 1_000_000, 2, axis=1)
 
         def block() -> None:
             times_ns[:] += TICKS * 1_000_000
-            assert state.advance(times_ns, poses, 0, True, records) == TICKS
+            assert loop.advance(times_ns, poses) == TICKS
 
         return block
 

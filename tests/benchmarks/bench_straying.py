@@ -18,7 +18,7 @@ from tests.benchmarks.timing import Result
 from vbraille.devices.events import HandDone
 from vbraille.engine.batch import BatchEngine
 from vbraille.render import STRESS2, STRESS2_8X8, Straying, Tuning
-from vbraille.simulation.hand import Sweep, drifting, read_lines
+from vbraille.simulation.hand import Hand, Sweep, drifting, read_lines
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.simulation.steering import ReadPage
 
@@ -38,12 +38,15 @@ TURNS_DEG = (0, 5, 10, 15, 20, 25, 30)
 _STEP = 0.1  # ticks at which the hand is within this share of a dot's width count for the dot
 
 
-class Drifting:
+class Drifting(Hand):
     """A hand at constant speed that strays so far from each line, without turning."""
 
     def __init__(self, stray: float, seed: int) -> None:
         self._stray, self._random = stray, np.random.default_rng(seed)
-        self.read_line = Sweep(40.0).read_line
+
+    def read_line(self, start_mm: float, end_mm: float) -> Motion:
+        """Motion along a line, which strays only on a page."""
+        return Sweep(40.0).read_line(start_mm, end_mm)
 
     def read_page(self, area: Area) -> Motion:
         """Motion over a page."""

@@ -33,7 +33,7 @@ table = choose_table("en")
 began = process_time()
 try:
     source = open_source(sys.argv[1])
-    Layout(Book(source, table), 30).first()
+    Layout(Book(source, table), 30).line(1)
     first = process_time() - began
     source.gather(10**9)
     print(first, process_time() - began, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)

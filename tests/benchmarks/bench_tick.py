@@ -58,11 +58,11 @@ def _read(spec: str, device: subprocess.Popen[str]) -> tuple[np.ndarray, float]:
     ticks = []
     with Host(spec, model.display, fits=False) as host:
         host.show(model.style.render(np.full(26, 63, np.uint8), host.display), 1)
-        begun_s, used_s = time.monotonic(), _processor_s(host.process_id)
+        begun_s, used_s = time.monotonic(), _processor_s(host._process.pid)
         while device.poll() is None and time.monotonic() - begun_s < SECONDS - 1:
             time.sleep(0.05)
             ticks.append(host.poll())
-        used_s = _processor_s(host.process_id) - used_s
+        used_s = _processor_s(host._process.pid) - used_s
         share = used_s / (time.monotonic() - begun_s)
     return np.concatenate(ticks), share
 

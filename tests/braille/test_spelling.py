@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 from vbraille.braille.spelling import (
     LETTERS,
     parse_answer,
-    parse_choice,
     say_cells,
     spell,
 )
@@ -146,25 +145,6 @@ class TestAnswer:
         answer = "".join("?" if mask is None else chr(0x2800 + mask) for mask in places)
         typed = parse_answer(answer, places=len(places), keys={}, shown_dots=SIX_DOTS)
         assert typed == answer
-
-
-class TestChoice:
-    @pytest.mark.parametrize("typed", ["1", "first", " First\n", "f", "F"])
-    def test_the_first(self, typed):
-        assert parse_choice(typed) == "1"
-
-    @pytest.mark.parametrize("typed", ["2", "second", "S"])
-    def test_the_second(self, typed):
-        assert parse_choice(typed) == "2"
-
-    @pytest.mark.parametrize("typed", ["3", "12", "one", "?"])
-    def test_neither(self, typed):
-        with pytest.raises(ValueError, match="is neither; type 1 for the first or 2 for the"):
-            parse_choice(typed)
-
-    def test_nothing(self):
-        with pytest.raises(ValueError, match=r"^nothing was typed; type 1 for"):
-            parse_choice(" ")
 
 
 class TestSay:

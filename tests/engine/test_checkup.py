@@ -22,7 +22,7 @@ def test_a_right_device_is_fit(monkeypatch):
     found, said = checked(monkeypatch)
     assert found.fit, found.wrong
     assert said[-1] == "verdict: fit to be read on"
-    assert len(found.trips_ms) == 3
+    assert len(found.values["trips_ms"]) == 3
     assert found.to_json()["fit"]
 
 

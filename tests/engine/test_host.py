@@ -96,7 +96,7 @@ def test_a_host_that_was_killed_is_told_and_begins_again():
         host.show(picture, 7)
         host.give(GlideTo(20.0, 0.0, 1000.0))
         polled(host, 0.3)
-        os.kill(host.process_id, signal.SIGKILL)
+        os.kill(host._process.pid, signal.SIGKILL)
         with pytest.raises(HostDiedError):
             polled(host, 3)
         host.start()
@@ -126,7 +126,7 @@ def test_a_device_of_c_is_read_and_rests_within_71_ms_of_any_end(tmp_path, how):
         ticks, _ = polled(host, 1.5)
         assert np.nanmax(ticks["x_mm"]) - np.nanmin(ticks["x_mm"]) > 10
         at = len(traced(trace))
-        os.kill(host.process_id, how)
+        os.kill(host._process.pid, how)
         with pytest.raises(HostDiedError):
             polled(host, 8)
         time.sleep(0.2)
@@ -144,9 +144,9 @@ def test_a_host_that_is_stopped_jumps_nowhere(tmp_path):
         host.show(picture, 1)
         polled(host, 1)
         for gap_s in (0.02, 0.2):
-            os.kill(host.process_id, signal.SIGSTOP)
+            os.kill(host._process.pid, signal.SIGSTOP)
             time.sleep(gap_s)
-            os.kill(host.process_id, signal.SIGCONT)
+            os.kill(host._process.pid, signal.SIGCONT)
             polled(host, 0.5)
         ticks, _ = polled(host, 0.3)
         assert ticks["frame"].any()

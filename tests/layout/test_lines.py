@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.translate.reading import opened
-from vbraille.layout import Layout, Remarks, wrap_text
-from vbraille.translate import Book, BrailleTable, choose_table, text_source
+from vbraille.layout import Layout, wrap_text
+from vbraille.translate import Book, BrailleTable, choose_table, remarks, text_source
 
 TEXTS = Path(__file__).parents[2] / "texts"
 TABLES = {name: BrailleTable(name) for name in ("en-ueb-g2.ctb", "de-g2.ctb", "zh-tw.ctb")}
@@ -174,11 +174,9 @@ def test_passages_in_other_languages_are_between_signs():
 def test_what_cannot_be_shown_or_written_is_said_at_the_end():
     page = "<html lang=en><p>a \ue123 ‹b› <img src=x><p><img src=y> <video>"
     book = Book(opened(page, "a.html"), TABLES["en-ueb-g2.ctb"])
-    remarks = Remarks(book)
-    assert remarks.sentences() == []
-    for line in Layout(book, 20).lines():
-        remarks.see(line.block)
-    unknown, plain, unshown = remarks.sentences()
+    assert remarks(book, []) == []
+    assert Layout(book, 20).count()
+    unknown, plain, unshown = remarks(book, book.source.blocks())
     assert "U+E123" in unknown
     assert "‹undefined›" in unknown
     assert "2 characters" in plain

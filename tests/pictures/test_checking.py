@@ -3,10 +3,9 @@
 import pytest
 from PIL import Image
 
-from vbraille.pictures.checking import felt_advice
+from vbraille.pictures.checking import check_scene
 from vbraille.pictures.loading import load_scene
 from vbraille.render import MODELS
-from vbraille.scene.checking import check_scene
 
 STYLE = MODELS["stress2"].style
 STROKE = "stroke = { width_mm = 3 }"
@@ -30,9 +29,7 @@ def label(text, x, y):
 def advice(tmp_path, *elements, canvas="{ width_mm = 200, height_mm = 150 }"):
     path = tmp_path / "a.scene"
     path.write_text(f"canvas = {canvas}\nelements = [{', '.join(elements)}]\n")
-    loaded = load_scene(path, STYLE)
-    first = check_scene(loaded.opened, loaded.boxes())
-    return [*first.advice, *felt_advice(loaded)]
+    return [*check_scene(load_scene(path, STYLE)).advice]
 
 
 SOLID = 'fill = { texture = { kind = "uniform" } }'

@@ -3,7 +3,7 @@
 import pytest
 
 from vbraille.errors import InputError
-from vbraille.pictures.checking import felt_advice
+from vbraille.pictures.checking import check_scene
 from vbraille.pictures.index import SceneIndex
 from vbraille.pictures.keys import crowded, keyed
 from vbraille.pictures.loading import load_scene
@@ -38,7 +38,7 @@ def test_a_label_that_does_not_fit_becomes_a_number_that_is_said_as_its_text(tmp
     long = LABEL.format(text="mitochondrion", x=80, y=40)
     loaded = load(tmp_path, wall, long, LAKE.format())
     assert [label.text for label in crowded(loaded)] == ["mitochondrion"]
-    assert any("--key" in advice for advice in felt_advice(loaded))
+    assert any("--key" in advice for advice in check_scene(loaded).advice)
     picture, key = keyed(loaded, STYLE)
     assert [one.text for one in picture.scene.elements[:2]] == ["wall", "1"]
     assert not crowded(picture)

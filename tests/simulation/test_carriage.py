@@ -8,7 +8,7 @@ import pytest
 from vbraille.render.braille.models import STRESS2
 from vbraille.simulation.carriage import Carriage, area_of
 from vbraille.simulation.hand import FLUENT, HumanHand, Sweep
-from vbraille.simulation.motion import APPROACH_MM_S
+from vbraille.simulation.motion import APPROACH_MM_S, Motion
 from vbraille.simulation.recorded import Recorded
 
 SPAN_MM = 10.8
@@ -22,14 +22,14 @@ class Bench:
     def __init__(self, hand=None, travel_mm=TRAVEL_MM):
         display = replace(STRESS2.display, travel_mm=travel_mm)
         self.carriage = Carriage(display, hand or Sweep(100.0))
-        self.now_us = 5_000_000
+        self.now_ns = 5_000_000_000
 
     def ways(self, seconds):
         """Where it is in the next seconds."""
         found = []
         for _ in range(round(seconds * 1000)):
-            self.now_us += 1000
-            found.append(self.carriage.at(self.now_us).way_mm)
+            self.now_ns += 1_000_000
+            found.append(self.carriage.at(self.now_ns)[0])
         return np.array(found)
 
 
@@ -55,7 +55,7 @@ def test_the_hand_reads_the_whole_travel_again_and_again(bench):
 def test_places_are_of_their_time_however_often_one_looks(bench):
     bench.carriage.set_out()
     bench.ways(0.001)
-    bench.now_us += 1_234_000
+    bench.now_ns += 1_234_000_000
     assert bench.ways(0.001)[0] == pytest.approx(123.5)
 
 
@@ -67,7 +67,7 @@ def test_setting_out_again_changes_nothing_under_way(bench):
 
 
 def test_a_recording_plays_once_from_where_it_begins(bench):
-    bench = Bench(Recorded(np.array([7.0, 7.25, 7.5]), np.array([14.2, 39.2, 20.0])))
+    bench = Bench(Recorded(Motion(np.array([0.0, 0.25, 0.5]), np.array([14.2, 39.2, 20.0]))))
     for _ in range(3):
         bench.carriage.set_out()
         ways = bench.ways(2.0)
@@ -79,7 +79,7 @@ def test_a_recording_plays_once_from_where_it_begins(bench):
 
 
 def test_it_goes_no_further_than_its_stops():
-    bench = Bench(Recorded(np.array([0.0, 0.25, 0.5]), np.array([0.0, 50.0, -50.0])), 40.0)
+    bench = Bench(Recorded(Motion(np.array([0.0, 0.25, 0.5]), np.array([0.0, 50.0, -50.0]))), 40.0)
     bench.carriage.set_out()
     ways = bench.ways(1.0)
     assert (ways.min(), ways.max()) == (0.0, 40.0)
@@ -88,11 +88,11 @@ def test_it_goes_no_further_than_its_stops():
 def test_going_back_it_waits_at_the_stop_to_be_told_again(bench):
     bench.carriage.set_out()
     bench.ways(1.001)
-    bench.carriage.go_back(bench.now_us)
+    bench.carriage.go_back(bench.now_ns)
     ways = bench.ways(1.0)
     assert ways[199] == pytest.approx(50.0)
     assert not ways[400:].any()
-    bench.carriage.go_back(bench.now_us)
+    bench.carriage.go_back(bench.now_ns)
     assert not bench.ways(0.1).any()
     bench.carriage.set_out()
     assert bench.ways(1.001)[-1] == pytest.approx(100.0)
@@ -101,7 +101,7 @@ def test_going_back_it_waits_at_the_stop_to_be_told_again(bench):
 def test_told_again_on_the_way_back_it_goes_to_the_stop_first(bench):
     bench.carriage.set_out()
     bench.ways(1.001)
-    bench.carriage.go_back(bench.now_us)
+    bench.carriage.go_back(bench.now_ns)
     bench.carriage.set_out()
     ways = bench.ways(1.4)
     assert ways[:410].min() == pytest.approx(0.0, abs=1e-6)
@@ -114,10 +114,10 @@ def test_told_again_on_the_way_back_it_goes_to_the_stop_first(bench):
 DISPLAY = replace(STRESS2.display, travel_mm=TRAVEL_MM, height_mm=65.0, turns=True)
 
 
-def places(carriage, seconds, begun_us=0):
+def places(carriage, seconds, begun_ms=0):
     """Where a carriage is in the next seconds, each millisecond; float64[n, 3]."""
     return np.array(
-        [carriage.at(begun_us + 1000 * ms) for ms in range(1, round(seconds * 1000) + 1)]
+        [carriage.at(1_000_000 * (begun_ms + ms)) for ms in range(1, round(seconds * 1000) + 1)]
     )
 
 
@@ -138,7 +138,7 @@ def test_a_hand_reads_the_page_line_by_line_and_again_from_its_top():
     carriage = made(Sweep(1000.0))
     assert not places(carriage, 0.1).any()
     carriage.set_out()
-    found = places(carriage, 12.0, 100_000)
+    found = places(carriage, 12.0, 100)
     assert found[:, 0].max() == pytest.approx(TRAVEL_MM, abs=1.0)
     middles = np.unique(found[np.flatnonzero(np.diff(found[:, 0]) > 0.9), 1].round(3))
     assert middles.tolist() == [5.0, 15.0, 25.0, 35.0, 45.0, 55.0]
@@ -161,7 +161,7 @@ def test_a_hand_as_people_s_strays_and_turns_and_stays_on_the_surface():
 
 def test_a_recorded_hand_moves_on_all_axes_once():
     t_s = np.arange(0, 1.001, 0.1)
-    hand = Recorded(t_s, 100 * t_s - SPAN_MM, 30 + 20 * t_s, 0.1 * t_s)
+    hand = Recorded(Motion(t_s, 100 * t_s - SPAN_MM, 30 + 20 * t_s, 0.1 * t_s))
     carriage = made(hand)
     carriage.set_out()
     found = places(carriage, 3.0)
@@ -173,10 +173,10 @@ def test_a_recorded_hand_moves_on_all_axes_once():
 
 def test_it_goes_back_to_both_stops_and_straightens():
     t_s = np.arange(0, 1.001, 0.1)
-    carriage = made(Recorded(t_s, 100 * t_s - SPAN_MM, 20 * t_s, 0.1 * t_s))
+    carriage = made(Recorded(Motion(t_s, 100 * t_s - SPAN_MM, 20 * t_s, 0.1 * t_s)))
     carriage.set_out()
     places(carriage, 0.5)
-    carriage.go_back(500_000)
-    found = places(carriage, 1.0, 500_000)
+    carriage.go_back(500_000_000)
+    found = places(carriage, 1.0, 500)
     assert not found[-1].any()
     assert np.abs(np.diff(found[:, 0])).max() <= APPROACH_MM_S / 1000 + 1e-9

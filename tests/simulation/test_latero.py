@@ -174,17 +174,17 @@ def test_an_interface_that_is_away_says_0():
 def test_the_hand_reads_along_each_line_and_then_down():
     carriage = LateroCarriage(parse_hand("sweep:200"), lines=3)
     assert carriage.at(0) == pytest.approx((0, 217.5, 0))
-    assert carriage.at(5_000_000) == pytest.approx((0, 217.5, 0))  # it has not set out
+    assert carriage.at(5_000_000_000) == pytest.approx((0, 217.5, 0))  # it has not set out
     carriage.set_out()
-    poses = np.array([carriage.at(us) for us in range(5_000_000, 17_000_000, 10_000)])
+    poses = np.array([carriage.at(1_000_000 * ms) for ms in range(5000, 17_000, 10)])
     x_mm, y_mm, _ = poses.T
     assert x_mm.min() == 0
     assert x_mm.max() == pytest.approx(281, abs=2)
     reading = y_mm[(x_mm > 100) & (x_mm < 200)]
     assert set(np.round(reading)) == {5, 15, 25}
     assert np.abs(np.diff(x_mm)).max() < 3
-    carriage.go_back(17_000_000)
-    assert carriage.at(19_000_000) == pytest.approx((0, 217.5, 0))
+    carriage.go_back(17_000_000_000)
+    assert carriage.at(19_000_000_000) == pytest.approx((0, 217.5, 0))
 
 
 def test_a_port_that_is_taken_is_said_in_a_sentence(latero):

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from vbraille.errors import InputError
 from vbraille.simulation.motion import Motion, Way
-from vbraille.simulation.recorded import MAX_GAP_S, Recorded, load_recorded
+from vbraille.simulation.recorded import MAX_GAP_S, load_recorded
 
 HEADER = "t_s,x_mm\n"
 
@@ -48,15 +48,6 @@ def test_time_increases_however_short_a_movement():
     assert way.motion().x_mm[-1] == 5e-324
 
 
-def test_a_recording_is_one_motion_from_time_0():
-    t_s = np.array([5.0, 5.5, 6.0])
-    hand = Recorded(t_s, np.array([1.0, 2.0, 0.0]))
-    assert list(hand.motion().t_s) == [0, 0.5, 1.0]
-    assert list(hand.motion().x_mm) == [1, 2, 0]
-    assert not hasattr(hand, "read_line")
-    assert list(t_s) == [5.0, 5.5, 6.0]
-
-
 @pytest.mark.parametrize(
     "text",
     [
@@ -70,8 +61,8 @@ def test_a_recording_is_one_motion_from_time_0():
 )
 def test_columns_are_found_by_name_or_are_two(load, text):
     hand = load(text)
-    np.testing.assert_allclose(hand.motion().t_s, [0, 0.1, 0.5])
-    assert list(hand.motion().x_mm) == [1, 2.5, -4]
+    np.testing.assert_allclose(hand.motion.t_s, [0, 0.1, 0.5])
+    assert list(hand.motion.x_mm) == [1, 2.5, -4]
 
 
 @pytest.mark.parametrize(
@@ -85,14 +76,13 @@ def test_columns_are_found_by_name_or_are_two(load, text):
     ],
 )
 def test_a_second_axis_and_the_angle_may_be_there(load, text, y_mm, theta_rad):
-    hand = load(text)
-    for motion in (hand, hand.motion()):
-        assert list(motion.x_mm) == [1, 2]
-        for got, want in ((motion.y_mm, y_mm), (motion.theta_rad, theta_rad)):
-            if want is None:
-                assert got is None
-            else:
-                np.testing.assert_allclose(got, want)
+    motion = load(text).motion
+    assert list(motion.x_mm) == [1, 2]
+    for got, want in ((motion.y_mm, y_mm), (motion.theta_rad, theta_rad)):
+        if want is None:
+            assert got is None
+        else:
+            np.testing.assert_allclose(got, want)
 
 
 @given(
@@ -106,14 +96,14 @@ def test_what_was_written_is_read(tmp_path_factory, steps):
     path = tmp_path_factory.mktemp("hand") / "hand.csv"
     rows = np.column_stack((t_s, x_mm)).tolist()
     path.write_text(HEADER + "".join(f"{t!r},{x!r}\n" for t, x in rows))
-    read = load_recorded(path).motion()
+    read = load_recorded(path).motion
     np.testing.assert_array_equal(read.t_s, t_s - t_s[0])
     np.testing.assert_array_equal(read.x_mm, x_mm)
 
 
 def test_the_longest_gap_is_allowed_whatever_its_rounding(load):
     assert MAX_GAP_S < 1.1 - 0.6
-    assert load(HEADER + "0.6,0\n1.1,1\n").motion().duration_s == pytest.approx(MAX_GAP_S)
+    assert load(HEADER + "0.6,0\n1.1,1\n").motion.duration_s == pytest.approx(MAX_GAP_S)
 
 
 @pytest.mark.parametrize(

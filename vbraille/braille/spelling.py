@@ -160,32 +160,6 @@ def ordinal(place: int) -> str:
     return ORDINALS[place] if place < len(ORDINALS) else f"number {place + 1}"
 
 
-def parse_choice(text: str, of: int = 2) -> str:
-    """Answer to a comparison, such as "1" or "2".
-
-    Parameters
-    ----------
-    text
-        What was typed: 1 or 2, first or second, f or s, in either case.
-    of
-        Number of those compared, up to 5.
-
-    Raises
-    ------
-    ValueError
-        If the text is something else.
-    """
-    word = text.strip().lower()
-    for number, name in enumerate(ORDINALS[:of], 1):
-        if word in (f"{number}", name) or (of < 4 and word == name[0]):
-            return f"{number}"
-    if of == 2:
-        said = f"{_quote(text)} is neither" if word else "nothing was typed"
-        raise ValueError(f"{said}; type 1 for the first or 2 for the second")
-    said = f"{_quote(text)} is none of them" if word else "nothing was typed"
-    raise ValueError(f"{said}; type 1 for the first, to {of} for the {ORDINALS[of - 1]}")
-
-
 def say_cells(answer: str, keys: dict[str, int]) -> str:
     """Words for speech: one for each place, with a space between.
 

@@ -12,9 +12,9 @@ from vbraille.cli.printing import say
 from vbraille.cli.settings import given, style_options
 from vbraille.errors import InputError
 from vbraille.knobs import KNOBS
-from vbraille.layout import Layout, Remarks, cells_per_line
+from vbraille.layout import Layout, cells_per_line
 from vbraille.render import MAPPINGS, single_row
-from vbraille.translate import Book, choose_table, has_tables, open_source
+from vbraille.translate import Book, choose_table, has_tables, open_source, remarks
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from vbraille.layout import Line
     from vbraille.render import Model
-    from vbraille.translate import Source
+    from vbraille.translate import Block, Source
 
 _OF_TABLE = ("language", "grade", "table")
 
@@ -173,7 +173,7 @@ class Page:
         width = width or cells_per_line(model.style.geometry, model.display)
         self.layout, self.model = Layout(book, width), model
         self.first, self.last = ctx.params["lines"]
-        self._remarks = Remarks(book)
+        self._seen: list[Block] = []
         self._given = 0  # lines
         if self.layout.line(self.first) is None:
             name, lines = book.source.name, self.layout.count()
@@ -189,7 +189,8 @@ class Page:
         for line in self.layout.lines(self.first, self.last):
             self._given += 1
             self.say_notes()
-            self._remarks.see(line.block)
+            if line.block not in self._seen[-1:]:
+                self._seen.append(line.block)
             yield line
 
     def progress(self, line: Line) -> float:
@@ -206,5 +207,5 @@ class Page:
     def say_end(self) -> None:
         """Print notes, and what of the lines was not shown."""
         self.say_notes()
-        for sentence in self._remarks.sentences():
+        for sentence in remarks(self.layout.book, self._seen):
             say(sentence, aside=True)

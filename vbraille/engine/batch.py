@@ -14,7 +14,6 @@ from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import LocalEngine
 from vbraille.engine.ticks import POSE_X, POSED
 from vbraille.errors import InputError
-from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.simulated import SimulatedDevice
 from vbraille.wording import setting
 
@@ -52,7 +51,7 @@ class BatchEngine(LocalEngine):
         if poll_ticks < 1:
             raise ValueError(f"a poll does {poll_ticks} ticks; it must do 1 or more")
         hand = device.hand if isinstance(device, SimulatedDevice) else None
-        if not isinstance(device, SimulatedDevice) or hand is None or isinstance(hand, Recorded):
+        if not isinstance(device, SimulatedDevice) or hand is None or hand.goes_on:
             raise InputError(
                 f"{setting('fast')} needs a hand that reads lines: slow, fluent or sweep:SPEED"
             )
@@ -72,8 +71,7 @@ class BatchEngine(LocalEngine):
             poses[:, column] = values
         self.clock.sleep_until_ns(int(due_ns[-1]))
         times_ns = np.repeat(due_ns[:, None], 2, axis=1)
-        taking = device.taking
-        self.advance(times_ns, poses, device.rested, taking, ring.columns, ring.slot)
+        self.advance(times_ns, poses)
         device.write(self.output)
         ring.publish(due_ns.size)
         return self._take()

@@ -10,12 +10,13 @@ import math
 import os
 import socket
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille.devices.events import Placing, WatchdogTripped, shown_place, told
+from vbraille.devices.events import Placing, shown_place, told
 from vbraille.devices.protocol import RAMP_MS, REST_MS, WATCHDOG_MS
 from vbraille.display import Pose
 from vbraille.engine.constants import JUMP_MM_S, NS_PER_S
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
 
     from vbraille.devices.base import Device
     from vbraille.engine.clock import Clock
+
+    _Row = NDArray[np.float64]
+    Lines = Iterator[tuple[str, str]]  # each with what is wrong, or an empty text
 
 _RATE_S = 3.0
 _MOST_ROUND_TRIP_MS = 4.0  # a hand at 70 mm/s goes a tenth of a dot in 4 ms
@@ -46,17 +50,6 @@ _HELD, _HOLD_S = 0.3, 0.1  # how far actuators go before a watchdog is left with
 _MOST_OF_TICK = 0.5  # for a driver's read and write together, as a share of a tick
 _ALIKE = 20  # first characters in which sentences on one kind of fault are alike
 _PARTS = 5  # frames of which a line takes a part at first
-_TICK = np.dtype(
-    [
-        ("late_ns", "<i8"),  # from when the tick was due to when it began
-        ("host_ns", "<i8"),  # the part of it that this computer alone is to blame for
-        ("work_ns", "<i8"),  # to read and to write
-        ("came_ns", "<i8"),  # when a pose came, by this computer's clock
-        ("device_ns", "<i8"),  # and by the device's
-        ("x_mm", "<f8"),  # NaN without one
-        ("taken_ns", "<f8"),  # how long a frame took to be acknowledged; NaN if that is not known
-    ]
-)
 _LATENCY = (
     "set the latency timer of its adapter to 1 ms (echo 1 | sudo tee "
     "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer), as docs/building.md says"
@@ -69,41 +62,20 @@ class Checkup:
 
     Parameters
     ----------
-    ticks, late
-        How many ticks were done, and how many came too late.
-    work_us
-        Time that a tick took to read, render and write, in µs: median and 99th percentile.
-    clock_s
-        Seconds that the device's clock goes on in one second of the computer's; None if it told no
-        time.
-    x_mm
-        Leftmost and rightmost place of the array's centre.
-    host_ms, device_ms, line_ms
-        Greatest lateness of the computer, of the device by its own clock, and of the line.
-    held_ms
-        Usual time from poses to the next poses that came; 0 if they came one by one.
-    round_trips_ms
-        First percentile, median and 99th percentile of the round trips; empty without any.
-    trips_ms
-        For each time without frames, when the watchdog's trip was reported; None if it was not.
-    counts
-        Faults by name, as the device and its line count them.
+    values
+        What was measured, by name. ``ticks`` and ``late``: how many ticks were done, and how many
+        came too late. ``host_ms``, ``device_ms`` and ``line_ms``: greatest lateness of the
+        computer, of the device by its own clock, and of the line. ``held_ms``: usual time from
+        poses to the next poses that came; 0 if they came one by one. ``clock_s``: seconds that the
+        device's clock goes on in one of the computer's. ``x_mm``: leftmost and rightmost place of
+        the array's centre. ``round_trips_ms``: first percentile, median and 99th. ``trips_ms``: for
+        each time without frames, when the watchdog's trip was reported, or None. ``counts``: faults
+        by name, as the device and its line count them. What could not be measured is missing.
     wrong
         Clauses on why the device is not fit to be read on.
     """
 
-    ticks: int = 0
-    late: int = 0
-    work_us: tuple[float, float] = (0.0, 0.0)
-    clock_s: float | None = None
-    x_mm: tuple[float, float] | None = None
-    host_ms: float = 0.0
-    device_ms: float = 0.0
-    line_ms: float = 0.0
-    held_ms: float = 0.0
-    round_trips_ms: list[float] = field(default_factory=list)
-    trips_ms: list[float | None] = field(default_factory=list)
-    counts: dict[str, int] = field(default_factory=dict)
+    values: dict[str, Any] = field(default_factory=dict)
     wrong: list[str] = field(default_factory=list)
 
     @property
@@ -113,7 +85,7 @@ class Checkup:
 
     def to_json(self) -> dict[str, Any]:
         """All of it, for JSON."""
-        return {"fit": self.fit, **asdict(self)}
+        return {"fit": self.fit, **self.values, "wrong": self.wrong}
 
 
 class Watch:
@@ -131,7 +103,7 @@ class Watch:
 
     def __init__(self, device: Device, clock: Clock) -> None:
         self._device, self._clock = device, clock
-        self._spent_ns: dict[str, list[int]] = {"read": [], "write": []}
+        self._spent_ns: list[int] = []  # by each call
         self.found: dict[str, str] = {}
         self._last, self._last_ns = Pose(-(1 << 62), math.nan), 0
 
@@ -141,11 +113,12 @@ class Watch:
     def faults(self) -> list[str]:
         """Clauses on what was wrong with the driver so far, each kind of fault once."""
         period_ms = 1e3 / self._device.display.rate_hz
-        median_ms = {name: np.median(ns or [0]) / 1e6 for name, ns in self._spent_ns.items()}
-        if sum(median_ms.values()) > _MOST_OF_TICK * period_ms:
-            told = " and ".join(f"its {name} takes {ms:.2f} ms" for name, ms in median_ms.items())
-            wrong = f"{told}, of the {period_ms:g} ms that a tick has; neither may wait"
-            self.found.setdefault("slow", wrong)
+        call_ms = float(np.median(self._spent_ns or [0])) / 1e6
+        if 2 * call_ms > _MOST_OF_TICK * period_ms:
+            self.found["slow"] = (
+                f"its read and write take {call_ms:.2f} ms each, of the {period_ms:g} ms that a "
+                f"tick has; neither may wait"
+            )
         return list(self.found.values())
 
     def write(self, frame: NDArray[np.float64]) -> bool:
@@ -188,7 +161,7 @@ class Watch:
         try:
             return getattr(self._device, name)(*given)
         finally:
-            self._spent_ns[name].append(self._clock.now_ns() - begun_ns)
+            self._spent_ns.append(self._clock.now_ns() - begun_ns)
 
 
 @contextmanager
@@ -198,21 +171,21 @@ def taking_parts(most: int = 5) -> Iterator[list[str]]:
     Gives a list, to which a clause is added if what is sent next is not the rest of it.
     """
     faults: list[str] = []
-    rest: dict[object, bytes] = {}
+    rest: dict[object, bytes] = {}  # of messages that were taken in part, by where they go
     real_write, real_send = os.write, socket.socket.send
 
     def part(key: object, data: Any) -> bytes:
-        data, left = bytes(data), rest.pop(key, b"")
-        if left and not data.startswith(left):
+        left = rest.pop(key, b"")
+        if left and not bytes(data).startswith(left):
             faults[:] = ["its write does not finish a message that the line took in part"]
-        if not left and len(data) > most:
-            rest[key] = data[most:]
-            return data[:most]
-        return data
+        if left or len(data) <= most:
+            return data
+        rest[key] = bytes(data[most:])
+        return data[:most]
 
     def send(self: socket.socket, data: Any, *flags: int) -> int:
-        whole = self.type is not socket.SOCK_STREAM
-        return real_send(self, data if whole else part(self, data), *flags)
+        stream = self.type is socket.SOCK_STREAM
+        return real_send(self, part(self, data) if stream else data, *flags)
 
     os.write = lambda descriptor, data: real_write(descriptor, part(descriptor, data))
     socket.socket.send = send
@@ -255,14 +228,13 @@ def check(
 
 
 class _Check:
-    """One check; each of its parts says what it measured and gives what is wrong."""
+    """One check; its measures give lines, each with what is wrong, or an empty text."""
 
     def __init__(self, device: Device, clock: Clock, say: Callable[[str], None]) -> None:
         self._watch = Watch(device, clock)
         self._device: Any = self._watch  # to all others it is the device
         self._clock, self._say = clock, say
         self._rate_hz = device.display.rate_hz
-        self._counted = dict(device.counts())  # before
         self._shown = False  # whether its place was chosen here, and says nothing
         self._found = Checkup()
 
@@ -272,30 +244,20 @@ class _Check:
         for row, column in np.ndindex(*device.display.shape):
             self._say(f"actuator: row {row + 1}, column {column + 1}")
             self._drive(_SWING_S, lambda share: math.sin(math.pi * share), (row, column))
-        self._hold_rate(rate_s)
-        found.wrong += [*self._rate(), *self._time(), *self._place(), *self._round_trips()]
-        counts = device.counts().items()
-        found.counts = {name: count - self._counted.get(name, 0) for name, count in counts}
-        for name, count in found.counts.items():
-            self._say(f"{name}: {count}")
-            found.wrong += [f"{name}: {count}"] * (count > _MOST_FAULTS)
-        notes = told(device.take_events())
-        found.wrong += [*self._watchdog(), *self._watch.faults()]
-        # Its trips were asked for.
-        notes += told(e for e in device.take_events() if not isinstance(e, WatchdogTripped))
-        for sentence in notes:
-            self._say(sentence)
-        found.wrong += finishes_parts(device)
-        try:
-            device.close()
-        except Exception as fault:  # of a driver
-            wrong = f"its driver cannot let it go ({type(fault).__name__}: {fault})"
-            found.wrong.append(wrong)
-        untold = ["what it has taken"] * (not device.acknowledges)
-        untold += ["its watchdog"] * (device.watchdog_trips is None)
-        but = f", but {' and '.join(untold)} could not be tested" if untold else ""
-        not_fit = f"not fit to be read on: {'; '.join(found.wrong)}"
-        self._say(f"verdict: {not_fit if found.wrong else f'fit to be read on{but}'}")
+        # All actuators swell and sink.
+        times = max(round(rate_s), 1)
+        ticks = self._drive(rate_s, lambda share: math.sin(math.pi * times * share) ** 2)
+        untold = []
+        lines = self._timing(*ticks), self._taking(*ticks), self._counts(), self._watchdog()
+        for said, wrong in chain(*lines):
+            self._say(said)
+            found.wrong += [wrong] * bool(wrong)
+            untold += [said.partition(":")[0]] * (": not tested" in said)
+        found.wrong += [*self._watch.faults(), *finishes_parts(device)]
+        verdict = f"fit to be read on{', but not tested: ' * bool(untold)}{', '.join(untold)}"
+        if found.wrong:
+            verdict = f"not fit to be read on: {'; '.join(found.wrong)}"
+        self._say(f"verdict: {verdict}")
         return found
 
     def _wait_for_place(self) -> None:
@@ -315,7 +277,7 @@ class _Check:
 
     def _drive(
         self, seconds: float, level: Callable[[float], float], at: Any = slice(None)
-    ) -> NDArray[np.void]:
+    ) -> NDArray[np.float64]:
         """Send frames for a while, at the device's rate.
 
         Parameters
@@ -330,137 +292,133 @@ class _Check:
 
         Returns
         -------
-        _TICK[n]
-            What was measured in each tick.
+        float64[6, n]
+            For each tick, in ms: from when it was due to when it began; the part of that for which
+            this computer alone is to blame; when its pose came, by the computer's clock and by the
+            device's; then x in mm, NaN without a pose; and how long a frame took to be
+            acknowledged, NaN if that is not known.
         """
         device, clock, rate_hz = self._device, self._clock, self._rate_hz
-        period_ns = round(NS_PER_S / rate_hz)
+        period_ns, count = round(NS_PER_S / rate_hz), max(round(seconds * rate_hz), 2)
         frame, was = np.zeros(device.display.shape), (device.rested, device.taking)
-        ticks = np.zeros(max(round(seconds * rate_hz), 2), _TICK)
+        ticks = np.zeros((count, 6))
         due_ns = clock.now_ns()
-        for n, tick in enumerate(ticks):
+        for n in range(count):
             due_ns, begun_ns = due_ns + period_ns, clock.now_ns()
             clock.sleep_until_ns(due_ns)
             woke_ns = clock.now_ns()
             sample = device.read() or Pose(0, math.nan)
-            frame[at] = level(n / ticks.size) * ((device.rested, device.taking) == was)
+            frame[at] = level(n / count) * ((device.rested, device.taking) == was)
             device.write(frame)
-            done_ns, taken_ns = clock.now_ns(), device.acknowledged_ns
-            tick["late_ns"], tick["host_ns"] = woke_ns - due_ns, woke_ns - max(due_ns, begun_ns)
-            tick["work_ns"], tick["came_ns"] = done_ns - woke_ns, woke_ns
-            tick["device_ns"], tick["x_mm"] = sample[:2]
-            tick["taken_ns"] = math.nan if taken_ns is None else taken_ns
-            due_ns = max(due_ns, done_ns - period_ns)  # what is late is not caught up with
-        return ticks
+            taken_ns = device.acknowledged_ns
+            taken_ms = math.nan if taken_ns is None else taken_ns / 1e6
+            late_ns, host_ns = woke_ns - due_ns, woke_ns - max(due_ns, begun_ns)
+            ticks[n, :4] = late_ns / 1e6, host_ns / 1e6, woke_ns / 1e6, sample.time_ns / 1e6
+            ticks[n, 4:] = sample.x_mm, taken_ms
+            due_ns = max(due_ns, clock.now_ns() - period_ns)  # what is late is not caught up with
+        return ticks.T
 
-    def _hold_rate(self, seconds: float) -> None:
-        """Drive the device at its rate for some seconds; all actuators swell and sink."""
-        found, period_ms = self._found, 1e3 / self._rate_hz
-        times = max(round(seconds), 1)
-        ticks = self._drive(seconds, lambda share: math.sin(math.pi * times * share) ** 2)
-        found.ticks, found.late = ticks.size, int((ticks["late_ns"] > period_ms * 1e6).sum())
-        found.work_us = tuple(np.percentile(ticks["work_ns"] / 1e3, (50, 99)).tolist())
-        found.host_ms = float(ticks["host_ns"].max()) / 1e6
-        taken_ms = ticks["taken_ns"][~np.isnan(ticks["taken_ns"])] / 1e6
-        if taken_ms.size:
-            found.round_trips_ms = np.percentile(taken_ms, (1, 50, 99)).tolist()
-        known = ticks[~np.isnan(ticks["x_mm"])]
-        if known.size < 4:
+    def _timing(self, late_ms: _Row, host_ms: _Row, came_ms: _Row, device_ms: _Row, x_mm: _Row,
+                _taken_ms: _Row) -> Lines:  # fmt: skip
+        """Tell the computer, the line and the device apart."""
+        values, period_ms = self._found.values, 1e3 / self._rate_hz
+        late, count = int((late_ms > period_ms).sum()), late_ms.size
+        values["ticks"], values["late"], values["host_ms"] = count, late, float(host_ms.max())
+        yield f"rate: {self._rate_hz:g} Hz, {late} of {count} ticks late", ""
+        came_ms, device_ms = came_ms[~np.isnan(x_mm)], device_ms[~np.isnan(x_mm)]
+        if came_ms.size < 4:
+            yield "late: not tested, since no poses came", "it told neither its time nor its place"
             return
-        found.x_mm = float(known["x_mm"].min()), float(known["x_mm"].max())
-        arrived, taken = np.diff(known["came_ns"]) / 1e6, np.diff(known["device_ns"]) / 1e6
-        usual_ms = float(np.median(arrived))
-        found.held_ms = usual_ms if usual_ms > _HELD_PERIODS * period_ms else 0.0
-        found.line_ms = max(float((arrived - taken).max()), 0.0)
-        if not found.held_ms:
-            found.device_ms = max(float(taken.max()) - period_ms, 0.0)
+        arrived_ms, apart_ms = np.diff(came_ms), np.diff(device_ms)
+        usual_ms = float(np.median(arrived_ms))
+        held_ms = values["held_ms"] = usual_ms if usual_ms > _HELD_PERIODS * period_ms else 0.0
+        values["line_ms"] = max(float((arrived_ms - apart_ms).max()), 0.0)
+        values["device_ms"] = 0.0 if held_ms else max(float(apart_ms.max()) - period_ms, 0.0)
+        wrong = f"{late / count:.1%} of the ticks come late on this computer"
+        wrong = wrong if late / count > _MOST_LATE else ""
+        if held_ms:
+            wrong = f"the line holds bytes back for {held_ms:.0f} ms; {_LATENCY}"
+        yield (
+            f"late: this computer by {values['host_ms']:.1f} ms at most, the device by "
+            f"{values['device_ms']:.1f} ms, the line by {values['line_ms']:.1f} ms",
+            wrong,
+        )
         # Over half of the time each, and their median: samples that came late weigh little.
-        half = known.size // 2
-        passed = {
-            name: known[name][half:] - known[name][:-half] for name in ("came_ns", "device_ns")
-        }
-        found.clock_s = float(np.median(passed["device_ns"] / np.maximum(passed["came_ns"], 1)))
-
-    def _rate(self) -> Iterator[str]:
-        found = self._found
-        self._say(f"rate: {self._rate_hz:g} Hz, {found.late} of {found.ticks} ticks late")
-        median_us, most_us = found.work_us
-        self._say(f"work: median {median_us:.0f} µs, 99 % under {most_us:.0f} µs")
-        self._say(
-            f"late: this computer by {found.host_ms:.1f} ms at most, the device by "
-            f"{found.device_ms:.1f} ms, the line by {found.line_ms:.1f} ms"
-        )
-        if found.held_ms:
-            yield f"the line holds bytes back for {found.held_ms:.0f} ms; {_LATENCY}"
-        elif found.late / found.ticks > _MOST_LATE:
-            yield f"{found.late / found.ticks:.1%} of the ticks come late on this computer"
-
-    def _time(self) -> Iterator[str]:
-        clock_s = self._found.clock_s
-        if clock_s is None:
-            yield "it told neither its time nor its place"
-            return
-        self._say(
+        half = came_ms.size // 2
+        since_ms = np.maximum(came_ms[half:] - came_ms[:-half], 1e-6)
+        clock_s = float(np.median((device_ms[half:] - device_ms[:-half]) / since_ms))
+        values["clock_s"], off = clock_s, abs(clock_s - 1) > _MOST_CLOCK
+        yield (
             f"clock: {clock_s:.3f} s pass on it in a second, {1 - _MOST_CLOCK:g} to "
-            f"{1 + _MOST_CLOCK:g} s are allowed"
+            f"{1 + _MOST_CLOCK:g} s are allowed",
+            f"its clock goes {clock_s:.2f} times as fast as it should" if off else "",
         )
-        if abs(clock_s - 1) > _MOST_CLOCK:
-            yield f"its clock goes {clock_s:.2f} times as fast as it should"
 
-    def _place(self) -> Iterator[str]:
-        info, x_mm = self._device.display, self._found.x_mm
-        if self._shown or x_mm is None:
+    def _taking(self, *ticks: _Row) -> Lines:
+        """Tell where the carriage was, and when frames were acknowledged."""
+        x_mm, taken_ms = (row[~np.isnan(row)] for row in ticks[4:])
+        info, values = self._device.display, self._found.values
+        if self._shown or not x_mm.size:
             why = f"its reader must show it {shown_place(info)}" if self._shown else "none was told"
-            self._say(f"place: not tested, since {why}")
-            return
-        edge = "left edge" if info.height_mm else "left stop"
-        low_mm, high_mm = (round(mm + info.span_mm / 2, 1) + 0.0 for mm in x_mm)
-        self._say(
-            f"place: {low_mm:.1f} to {high_mm:.1f} mm from the {edge}, of {info.travel_mm:g} mm"
-        )
-        off_mm = low_mm if low_mm < -_PLACE_SLACK_MM else high_mm
-        if not -_PLACE_SLACK_MM <= off_mm <= info.travel_mm + _PLACE_SLACK_MM:
-            yield (
+            yield f"place: not tested, since {why}", ""
+        else:
+            values["x_mm"] = [float(x_mm.min()), float(x_mm.max())]
+            edge = "left edge" if info.height_mm else "left stop"
+            low_mm, high_mm = (round(mm + info.span_mm / 2, 1) + 0.0 for mm in values["x_mm"])
+            off_mm = low_mm if low_mm < -_PLACE_SLACK_MM else high_mm
+            near = -_PLACE_SLACK_MM <= off_mm <= info.travel_mm + _PLACE_SLACK_MM
+            wrong = (
                 f"its carriage is at {off_mm:.1f} mm from the {edge}, where it cannot be; see to "
                 f"{shown_place(info)}, its counts and their sign"
             )
-
-    def _round_trips(self) -> Iterator[str]:
+            where = f"{low_mm:.1f} to {high_mm:.1f} mm from the {edge}, of {info.travel_mm:g} mm"
+            yield f"place: {where}", "" if near else wrong
         if not self._device.acknowledges:
-            self._say("round trip: not tested, since this device does not say what it has taken")
-        elif not self._found.round_trips_ms:
-            self._say("round trip: none, for no frame was acknowledged")
-            yield "it acknowledges none of the frames that it is sent"
+            yield "round trip: not tested, since this device does not say what it has taken", ""
+        elif not taken_ms.size:
+            wrong = "it acknowledges none of the frames that it is sent"
+            yield "round trip: none, for no frame was acknowledged", wrong
         else:
-            low, median, high = self._found.round_trips_ms
-            self._say(f"round trip: median {median:.2f} ms, 98 % within {low:.2f} to {high:.2f} ms")
-            if median > _MOST_ROUND_TRIP_MS and not self._found.held_ms:
-                took = f"a round trip takes {median:.1f} ms"
-                yield f"{took}, so the line holds bytes back; {_LATENCY}"
+            low, median, high = np.percentile(taken_ms, (1, 50, 99)).tolist()
+            values["round_trips_ms"] = [low, median, high]
+            slow = median > _MOST_ROUND_TRIP_MS and not values.get("held_ms")
+            wrong = f"a round trip takes {median:.1f} ms, so the line holds bytes back; {_LATENCY}"
+            said = f"round trip: median {median:.2f} ms, 98 % within {low:.2f} to {high:.2f} ms"
+            yield said, wrong if slow else ""
 
-    def _watchdog(self) -> Iterator[str]:
+    def _counts(self) -> Lines:
+        """Tell what the device and its line counted, and what happened."""
+        counts = self._found.values["counts"] = dict(self._device.counts())
+        for name, count in counts.items():
+            said = f"{name}: {count}"
+            yield said, said if count > _MOST_FAULTS else ""
+        for sentence in told(self._device.take_events()):
+            yield sentence, ""
+
+    def _watchdog(self) -> Lines:
         """Leave the device without frames several times, and see how long it takes to say so."""
         if self._device.watchdog_trips is None:
-            self._say("watchdog: not tested, since this device does not tell of one")
+            yield "watchdog: not tested, since this device does not tell of one", ""
             return
-        self._say("watchdog: the device is sent nothing now, so that it trips")
-        trips = self._found.trips_ms = [self._trip_ms() for _ in range(_TRIPS)]
+        yield "watchdog: the device is sent nothing now, so that it trips", ""
+        trips = self._found.values["trips_ms"] = [self._trip_ms() for _ in range(_TRIPS)]
         tripped = [ms for ms in trips if ms is not None]
         if not tripped:
-            self._say("watchdog: no trip was reported")
-            yield "its watchdog does not trip when no frame comes; do not read on it"
+            wrong = "its watchdog does not trip when no frame comes; do not read on it"
+            yield "watchdog: no trip was reported", wrong
             return
-        after_ms = float(np.median(tripped))
-        self._say(
-            f"watchdog: tripped {len(tripped)} of {_TRIPS} times, {after_ms:.1f} ms after the last "
-            f"frame, and so at rest after {after_ms + RAMP_MS:.1f} ms; {REST_MS} ms are promised"
-        )
+        after_ms, wrong = float(np.median(tripped)), ""
         if len(tripped) < _TRIPS:
-            yield f"its watchdog trips {len(tripped)} of {_TRIPS} times that no frame comes"
+            wrong = f"its watchdog trips {len(tripped)} of {_TRIPS} times that no frame comes"
         elif not _EARLIEST_TRIP_MS <= after_ms <= REST_MS - RAMP_MS + _REPORT_MS:
             how = "early" if after_ms < WATCHDOG_MS else "late"
             when = f"its watchdog trips after {after_ms:.0f} ms, too {how}"
-            yield f"{when}; {WATCHDOG_MS} ms are right"
+            wrong = f"{when}; {WATCHDOG_MS} ms are right"
+        yield (
+            f"watchdog: tripped {len(tripped)} of {_TRIPS} times, {after_ms:.1f} ms after the last "
+            f"frame, and so at rest after {after_ms + RAMP_MS:.1f} ms; {REST_MS} ms are promised",
+            wrong,
+        )
 
     def _trip_ms(self) -> float | None:
         """Send nothing, with the actuators off their rest, until the device's watchdog trips."""

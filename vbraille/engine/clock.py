@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import select
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,10 +28,10 @@ class RealClock:
         while time.monotonic_ns() < deadline_ns:
             pass
 
-    def wait_ns(self, descriptors: Sequence[int], deadline_ns: int) -> list[int]:
-        """Return once a descriptor can be read, or at the deadline; give those that can."""
+    def wait_ns(self, readers: Sequence[Any], deadline_ns: int) -> list[Any]:
+        """Return once a descriptor or a socket can be read, or at the deadline; give those."""
         left_s = max(deadline_ns - time.monotonic_ns(), 0) / 1e9
-        return select.select(descriptors, (), (), left_s)[0]
+        return select.select(readers, (), (), left_s)[0]
 
 
 class ManualClock:
@@ -48,9 +48,9 @@ class ManualClock:
         """Turn the clock to the deadline."""
         self._now_ns = max(self._now_ns, deadline_ns)
 
-    def wait_ns(self, descriptors: Sequence[int], deadline_ns: int) -> list[int]:
-        """Give the descriptors that can be read; turn the clock to the deadline if none can."""
-        ready = select.select(descriptors, (), (), 0)[0]
+    def wait_ns(self, readers: Sequence[Any], deadline_ns: int) -> list[Any]:
+        """Give those that can be read; turn the clock to the deadline if none can."""
+        ready = select.select(readers, (), (), 0)[0]
         if not ready:
             self.sleep_until_ns(deadline_ns)
         return ready

@@ -4,15 +4,16 @@ from typing import Final
 
 NS_PER_S: Final = 1_000_000_000
 FADE_S: Final = 0.1
-PAUSE_FADE_S: Final = 0.02
+FADE_NS: Final = round(FADE_S * NS_PER_S)
+PAUSE_FADE_NS: Final = 20_000_000
 # What a hand moved in a gap of so long, or of more periods, is faded in over so long.
-GAP_S: Final = 0.004
+GAP_NS: Final = 4_000_000
 GAP_PERIODS: Final = 2.5
-CATCH_S: Final = 0.05
+CATCH_NS: Final = 50_000_000
 # A frame counts for no more of a fade, however late it is.
-STEP_S: Final = 0.005
-IDLE_S: Final = 5.0
-SILENCE_S: Final = 0.1
+STEP_NS: Final = 5_000_000
+IDLE_NS: Final = 5 * NS_PER_S
+SILENCE_NS: Final = 100_000_000
 # A hand that moved less than this is at rest: some counts of a fine encoder.
 STILL_MM: Final = 0.05
 # No hand moves 5 m/s: a carriage that is further within a tick was lost and found again.

@@ -16,7 +16,6 @@ from collections import deque
 from contextlib import suppress
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final, Self
-from urllib.parse import parse_qs
 
 from vbraille.devices.events import Back, Stalled, from_json
 from vbraille.devices.registry import find_driver
@@ -37,7 +36,8 @@ if TYPE_CHECKING:
     from vbraille.render.program import Program
     from vbraille.simulation.steering import HandOrder
 
-OPEN_S: Final = 10.0  # that a driver may take to open its device, beside the start of its board
+OPEN_S: Final = 10.0  # that a driver may take to open its device
+BOOT_S: Final = 60.0  # that a board may take besides, whose address says how long
 _END_S: Final = 5.0  # that fading takes, and letting a device go that may be gone
 _STALL_S: Final = 1.0  # after which a loop that has done no tick is held up by its driver
 _LOOK_S: Final = 0.1  # between looks whether the process is still there
@@ -153,19 +153,23 @@ class Host(Watcher):
             self.launch()
         elif self._ring is not None:
             return self.display
+        # A driver may take so long, and its board as long as it boots.
+        most_s = OPEN_S + (BOOT_S if "boot=" in self._spec else 0.0)
         until_s = math.inf
         while self._ring is None:
             select.select((self._socket,), (), (), _LOOK_S)
             if not self._hear() and self._ring is None:
                 raise self._ended_by()
             if self._at_driver and until_s == math.inf:
-                boot_s = parse_qs(self._spec.partition("?")[2]).get("boot", ["0"])[0]
-                with suppress(ValueError):  # the driver refuses it
-                    until_s = time.monotonic() + OPEN_S + float(boot_s)
+                until_s = time.monotonic() + most_s
             if time.monotonic() > until_s:
                 assert self._process is not None
                 self._process.kill()
-                self._fault = too_slow(self._spec)
+                self._fault = DeviceError(
+                    f"the driver {self._spec.partition(':')[0]} did not open its device within "
+                    f"{most_s:g} s; see whether the device is there and switched on, or tell the "
+                    f"driver's author"
+                )
                 raise self._ended_by()
         if first not in (None, self._display):
             self.close()
@@ -179,11 +183,6 @@ class Host(Watcher):
             if self._order is not None:
                 self.give(self._order)
         return self.display
-
-    @property
-    def process_id(self) -> int | None:
-        """Number of the host process."""
-        return None if self._process is None else self._process.pid
 
     @property
     def display(self) -> Display:
@@ -408,11 +407,3 @@ class Host(Watcher):
             return fault
         how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
         return HostDiedError(f"the process that drives the device has ended ({how})")
-
-
-def too_slow(spec: str) -> DeviceError:
-    """Fault of a driver that has not opened its device in `OPEN_S`."""
-    return DeviceError(
-        f"the driver {spec.partition(':')[0]} did not open its device within {OPEN_S:g} s; see "
-        f"whether the device is there and switched on, or tell the driver's author"
-    )

@@ -70,7 +70,6 @@ class Parent:
 
     def __init__(self, descriptor: int) -> None:
         self._socket = socket.socket(fileno=descriptor)
-        self.descriptor = descriptor
         self.ended = False
         self.loop: Loop | None = None
         self._throttle = Throttle()
@@ -102,14 +101,16 @@ class Parent:
             match order:
                 case "show":
                     loop.show(_program(descriptors[0], *value["sizes"]), value["line"])
-                case "paused":
-                    loop.paused = value
-                case "switches":
-                    loop.switches = value
+                case "paused" | "switches":
+                    setattr(loop, order, value)
                 case "zero":
                     loop.device.set_zero()
                 case "hand" if isinstance(loop.device, SimulatedDevice):
                     loop.device.obey(from_json(value.encode()))
+
+    def fileno(self) -> int:
+        """Descriptor that can be read when the parent wants something."""
+        return self._socket.fileno()
 
     def pass_on(self, now_ns: int) -> None:
         """Tell the events of the loop and its device, not the same more than once a second.
@@ -146,7 +147,7 @@ def warm_up(info: Display) -> None:
     clock = ManualClock()
     with SimulatedDevice(info, clock.now_ns) as device:
         loop = Loop(device, clock)
-        loop.show(nothing(info))
+        loop.show(nothing(info), 0)
         for _ in range(_WARM_TICKS):
             loop.tick()
         loop.fade_to_rest()
@@ -200,8 +201,7 @@ def run(parent: Parent, memory: int) -> None:
         rehearsal = Loop(device, RealClock(), rate_hz=rate_hz)  # what is first called takes longer
         for _ in range(max(2, round(_REHEARSAL_S * rate_hz))):
             rehearsal.tick()
-        orders = parent.descriptor, parent.obey
-        parent.loop = loop = Loop(device, RealClock(), rate_hz=rate_hz, ring=ring, orders=orders)
+        parent.loop = loop = Loop(device, RealClock(), rate_hz=rate_hz, ring=ring, orders=parent)
         signal.signal(signal.SIGTERM, lambda *_: setattr(parent, "ended", True))
         parent.say(
             ready=display,

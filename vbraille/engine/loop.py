@@ -6,15 +6,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from vbraille.engine.constants import FADE_S, NS_PER_S
+from vbraille.engine import ticks
+from vbraille.engine.constants import (
+    DIFFERENCE,
+    FADE_S,
+    GAP_NS,
+    GAP_PERIODS,
+    MEAN,
+    NS_PER_S,
+    STEP_NS,
+)
 from vbraille.engine.engine import EndOfLine, Watcher
-from vbraille.engine.record import FLAGS, LATE, LATENESS, OVERRUNS, WORK, Flag, Ring, Tally
-from vbraille.engine.state import LoopState
+from vbraille.engine.record import FLAGS, FLOATS, INTS, LATE, LATENESS, WORK, Flag, Ring, Tally
 from vbraille.engine.ticks import POSE_THETA, POSE_X, POSE_Y, POSED
-from vbraille.errors import DeviceError
+from vbraille.errors import DeviceError, check_range
+from vbraille.render import work
+from vbraille.render.program import nothing
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
@@ -34,7 +44,7 @@ _SAME_RATE = 0.01
 _GUARD = 4
 
 
-class Loop(LoopState):
+class Loop:
     """Drive a device, tick by tick.
 
     A device that tells its place as often as there are ticks begins each of them; ticks of others
@@ -52,7 +62,7 @@ class Loop(LoopState):
     ring
         Ring in which every tick is recorded; without it only the last tick is kept.
     orders
-        Descriptor that can be read when there is something to obey, and what then obeys it.
+        What can be waited for, by its ``fileno``, and then is told to ``obey``; None for nothing.
 
     Raises
     ------
@@ -67,13 +77,13 @@ class Loop(LoopState):
         *,
         rate_hz: float = 1000.0,
         ring: Ring | None = None,
-        orders: tuple[int, Callable[[], None]] | None = None,
+        orders: Any = None,
     ) -> None:
+        check_range("rate", rate_hz, 1, 10_000, " Hz")
         display, now_ns = device.display, clock.now_ns()
-        super().__init__(display, rate_hz, now_ns, device.rested)
         self.device, self.clock, self.rate_hz = device, clock, rate_hz
         self.ring = ring or Ring.alone(display.shape, 2)
-        self._late = self._overruns = 0
+        self._late = 0
         self._orders = orders
         self._period_ns = round(NS_PER_S / rate_hz)
         self._guard_ns = self._period_ns // _GUARD
@@ -82,13 +92,90 @@ class Loop(LoopState):
         self._times_ns = np.zeros((1, 2), np.int64)
         self._poses = np.zeros((1, 4))
         self._pose = self._poses[0]
+        state = np.zeros(1, ticks.STATE)
+        self.now = now = state[0]
+        self._sent_ns, self._faded_ns = state["sent_ns"], state["faded_ns"]
+        now["period_ns"] = self._period_ns
+        now["gap_ns"] = max(GAP_NS, round(GAP_PERIODS * self._period_ns))
+        now["step_ns"] = max(STEP_NS, self._period_ns)
+        now["free_y"] = "y" in display.axes
+        now["time_ns"] = now["moved_ns"] = now["sampled_ns"] = now["sent_ns"] = now_ns
+        now["rested"] = device.rested
+        now["share"] = 1.0
+        now["x_mm"] = now["y_mm"] = now["theta_rad"] = np.nan
+        ints = state.view(np.int64)[: len(INTS)]
+        floats = state.view(np.float64)[len(ticks.WHOLE) : len(ticks.WHOLE) + len(FLOATS)]
+        windows = np.zeros((DIFFERENCE, 3)), np.zeros((MEAN, 2))
+        self.output, held, target = (np.zeros(display.shape) for _ in range(3))
+        frames = self.output, held, target
+        self._known = state, ints, floats, *windows, *frames, np.zeros(work.AT)
+        self._program = nothing(display)
+        # The frame before, the time at which it was sent, and how far its fade had come.
+        self._before, self._before_ns = self.output.copy(), (now_ns, 0)
+        self._serials = 0
 
     @property
     def tally(self) -> Tally:
         """Counts of what happened so far."""
         now = self.now
         forward = float(now["forward_mm"]), float(now["forward_s"])
-        return Tally(int(now["tick"]), self._late, self._overruns, *forward)
+        return Tally(int(now["tick"]), self._late, *forward)
+
+    def show(self, picture: Program, line: int) -> None:
+        """Put another picture under the hand from the next tick on; it fades in.
+
+        Parameters
+        ----------
+        picture
+            What is to be shown.
+        line
+            Number by which records call it.
+
+        Raises
+        ------
+        ValueError
+            If it was compiled for another array.
+        """
+        picture.check_shape(self.output.shape)
+        self._serials += 1
+        self.now["line"], self.now["serial"] = line, self._serials
+        self._program = picture
+
+    @property
+    def paused(self) -> bool:
+        """Tell whether the array rests until told otherwise; setting it works from the next tick.
+
+        What rests comes back for it.
+        """
+        return bool(self.now["paused"])
+
+    @paused.setter
+    def paused(self, paused: bool) -> None:
+        self.now["paused"] = paused
+        self.now["moved_ns"] = self.now["time_ns"]
+        self.now["begun"] = 0
+
+    @property
+    def switches(self) -> int:
+        """States of a scene's switches, as `vbraille.scene.signals.packed` has them.
+
+        Setting them works from the next tick; what rests comes back for it.
+        """
+        return int(self.now["switches"])
+
+    @switches.setter
+    def switches(self, switches: int) -> None:
+        self.now["switches"] = switches
+        self.now["moved_ns"] = self.now["time_ns"]
+
+    def advance(self, times_ns: NDArray[np.int64], poses: NDArray[np.float64]) -> int:
+        """Do ticks, from the ring's next slot on; see `vbraille.engine.ticks.advance`."""
+        np.copyto(self._before, self.output)
+        self._before_ns = self._sent_ns[0], self._faded_ns[0]
+        program = self._program.numbers, self._program.table, self._program.scratch
+        device, ring = self.device, self.ring
+        given = times_ns, poses, device.rested, device.taking
+        return ticks.advance(*self._known, *program, *given, *ring.columns, ring.slot)
 
     def take_events(self) -> list[Event]:
         """Take the events of the device since the last call."""
@@ -114,12 +201,15 @@ class Loop(LoopState):
                 raise self._nowhere()
         taking = device.taking
         slot = ring.slot
-        if not self.advance(times_ns, self._poses, device.rested, taking, ring.columns, slot):
+        if not self.advance(times_ns, self._poses):
             raise self._nowhere()
         if device.write(self.output):
             self._sent_ns[0] = clock.now_ns()
-        elif device.taking:  # otherwise the actuators rest, as the next tick finds
-            self.unsent()
+        elif (
+            device.taking
+        ):  # the actuators are where they were; else the next tick finds them at rest
+            np.copyto(self.output, self._before)
+            self._sent_ns[0], self._faded_ns[0] = self._before_ns
         done_ns = clock.now_ns()
         # Deadlines that have passed are counted, and never chased.
         lateness_ns = max(now_ns - self._due_ns, 0)
@@ -129,10 +219,9 @@ class Loop(LoopState):
         missed = max((done_ns - self._due_ns) // self._period_ns, 0)
         self._late += missed
         self._due_ns += missed * self._period_ns
-        self._overruns += done_ns - now_ns > self._period_ns
         whole = ring.integers
         whole[slot, LATENESS], whole[slot, WORK] = lateness_ns, done_ns - now_ns
-        whole[slot, LATE], whole[slot, OVERRUNS] = self._late, self._overruns
+        whole[slot, LATE] = self._late
         if device.placing or not (taking and device.taking):  # a write may have brought it to rest
             held = 0 if device.taking else _HELD
             whole[slot, FLAGS] = (whole[slot, FLAGS] & ~_HELD) | held | _PLACING[device.placing]
@@ -153,12 +242,10 @@ class Loop(LoopState):
             device.ask()
         clock.sleep_until_ns(begins_ns)
         while True:
-            waited = [device.descriptor] if follows and device.descriptor is not None else []
-            if orders is not None:
-                waited.append(orders[0])
-            ready = clock.wait_ns(waited, latest_ns)
-            if orders is not None and orders[0] in ready:
-                orders[1]()
+            waited = (device.descriptor if follows else None), orders
+            ready = clock.wait_ns([each for each in waited if each is not None], latest_ns)
+            if orders is not None and orders in ready:
+                orders.obey()
             sample = device.read()
             if sample is not None or clock.now_ns() >= latest_ns:
                 return sample
@@ -191,7 +278,7 @@ class Loop(LoopState):
             If the device is gone.
         """
         device = self.device
-        LoopState.show(self, None)
+        self.now["line"] = self.now["serial"] = 0
         left = self.output.copy()
         if device.calibration is not None:
             device.calibrate(None)
@@ -246,7 +333,7 @@ class LocalEngine(Loop, Watcher):
         """Tell whether a simulated hand moves the device, and takes orders."""
         return hasattr(self.device, "obey")
 
-    def show(self, picture: Program | None, line: int = 0, end_mm: float | None = None) -> None:
+    def show(self, picture: Program, line: int, end_mm: float | None = None) -> None:
         """Put another picture under the hand; see `vbraille.engine.host.Host.show`."""
         super().show(picture, line)
         self._line = line

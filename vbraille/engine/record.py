@@ -25,7 +25,6 @@ INTS = (
     "lateness_ns",  # from the deadline to the waking
     "work_ns",  # from waking until the frame was written
     "late",  # deadlines missed so far
-    "overruns",  # ticks so far whose own work took longer than a period
     "line",  # number of what is under the hand; 0 before the first
     "part",  # which part of the picture is shown, such as the line of a page, from 0
     "flags",  # bits of `Flag`
@@ -42,7 +41,7 @@ FLOATS = (
     "share",  # how much of a change has faded in: 1 is all
     *(f"signal_{number}" for number in range(1, MOST_SIGNALS + 1)),  # values of a scene's signals
 )
-TICK, TIME, DEVICE, LATENESS, WORK, LATE, OVERRUNS, LINE, PART, FLAGS = range(len(INTS))
+TICK, TIME, DEVICE, LATENESS, WORK, LATE, LINE, PART, FLAGS = range(len(INTS))
 X, Y, THETA, VX, VY, FORWARD_MM, FORWARD_S, SHOWN, SHARE, SIGNAL = range(10)
 
 
@@ -90,15 +89,12 @@ class Tally(NamedTuple):
     ----------
     ticks, late
         Number of ticks done, and of deadlines that passed before their tick could begin.
-    overruns
-        Number of ticks whose own work took longer than a period.
     forward_mm, forward_s
         How far the hand went to the right in all, and how long that took.
     """
 
     ticks: int = 0
     late: int = 0
-    overruns: int = 0
     forward_mm: float = 0.0
     forward_s: float = 0.0
 

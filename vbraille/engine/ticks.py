@@ -10,19 +10,39 @@ without poses or frames. A fade goes by ticks: a loop that was held up would jum
 time that it lost for time in which it faded. So does the time of a picture that moves by itself.
 """
 
+import numpy as np
 from numba import njit
 
 from vbraille.caching import keep_compiled
 from vbraille.engine.constants import (
     APART_NS,
+    CATCH_NS,
     DIFFERENCE,
+    FADE_NS,
+    IDLE_NS,
     JUMP_MM_S,
     MEAN,
     NS_PER_S,
+    PAUSE_FADE_NS,
     REACH_MM,
+    SILENCE_NS,
     STILL_MM,
 )
-from vbraille.engine.record import FLAGS, PART, SHARE, SHOWN, SIGNAL, THETA, VX, VY, Flag, X, Y
+from vbraille.engine.record import (
+    FLAGS,
+    FLOATS,
+    INTS,
+    PART,
+    SHARE,
+    SHOWN,
+    SIGNAL,
+    THETA,
+    VX,
+    VY,
+    Flag,
+    X,
+    Y,
+)
 from vbraille.render import work
 from vbraille.render.frames import blend, copy
 from vbraille.render.kernels import SCENE, frame, part_of, patience, seamless, too_far
@@ -34,6 +54,33 @@ _TURNED, _UNFELT = int(Flag.TURNED), int(Flag.UNFELT)
 # What a tick is given, each a row of float64; times are whole numbers that fit into one.
 (POSED, POSE_X, POSE_Y, POSE_THETA) = range(4)
 _NOWHERE_MM = 1e6
+
+# All that a tick knows from those before it.
+# The numbers of a tick's record come first, the whole ones and the others.
+WHOLE = (
+    *INTS,
+    # What does not change: durations that follow from the rate, and whether there is an axis y.
+    "period_ns", "gap_ns", "step_ns", "free_y",
+    "serial",  # how many pictures were wanted under the hand, and so the last one's number
+    "paused",
+    "switches",  # states of a scene's switches, three bits for each signal
+    "sent_ns",  # when a frame last went out
+    "faded_ns", "fading_ns",  # how far a fade has come, and how long it takes
+    "placed",  # whether it is known where the array is
+    "sampled_ns",  # when the last pose came, by our clock
+    "moved_ns",  # when the hand last moved
+    "shown",  # serial number of what is under the hand; 0 at rest
+    "turned",  # whether the array is turned too far for what is wanted
+    "begun", "shown_ns",  # the picture whose own time goes, and that time
+    "rested",  # how often the device has gone to rest by itself
+    "samples",  # of the velocity
+)  # fmt: skip
+_REAL = (
+    *FLOATS,
+    "own_y_mm",  # the carriage's y; a slider has none, and its record has the picture's
+    "moved_x_mm", "moved_y_mm", "moved_theta",  # where the hand last moved to
+)  # fmt: skip
+STATE = np.dtype([(name, "<i8") for name in WHOLE] + [(name, "<f8") for name in _REAL])
 
 _compiled = njit(cache=keep_compiled(), error_model="numpy", nogil=True)
 
@@ -110,17 +157,17 @@ def _take_pose(now, window, velocities, device_ns, pose):
         step = x - now["x_mm"]
         elapsed_ns = max(now_ns - now["sampled_ns"], now["period_ns"])
         # Poses that were late come with the next one: only the device's clock tells of such a gap.
-        gap_ns = max(elapsed_ns, min(device_ns - now["device_ns"], now["silence_ns"]))
+        gap_ns = max(elapsed_ns, min(device_ns - now["device_ns"], SILENCE_NS))
         far_mm = _far_mm(step, y - now["own_y_mm"], theta - now["theta_rad"])
         if far_mm > JUMP_MM_S * gap_ns / NS_PER_S:
             # No hand is so fast: the carriage was lost and found again.
             forget_velocity(now, velocities)
-            _change(now, now["fade_ns"])
+            _change(now, FADE_NS)
         else:
             # A fade that is under way is not begun anew, or it would never end on a slow line.
             fading = now["faded_ns"] < now["fading_ns"]
             if gap_ns > now["gap_ns"] and now["shown"] != 0 and not fading:
-                _change(now, now["catch_ns"])
+                _change(now, CATCH_NS)
             if step > 0:
                 now["forward_mm"] += step
                 now["forward_s"] += elapsed_ns / NS_PER_S
@@ -141,11 +188,11 @@ def _wanted(now, taking, numbers):
     """Serial number of the picture that belongs under the hand now; 0 is rest."""
     if now["paused"] or now["placed"] == 0 or not taking or now["turned"]:
         return 0
-    if now["time_ns"] - now["sampled_ns"] > now["silence_ns"]:
+    if now["time_ns"] - now["sampled_ns"] > SILENCE_NS:
         return 0
     # A picture that moves by itself is felt without moving the hand, though not without end.
     still_ns = now["time_ns"] - now["moved_ns"]
-    if numbers[work.FREQUENCY] == 0.0 and still_ns > now["idle_ns"]:
+    if numbers[work.FREQUENCY] == 0.0 and still_ns > IDLE_NS:
         return 0
     if still_ns > patience(numbers) * NS_PER_S:
         return 0
@@ -158,7 +205,7 @@ def _decide(now, y_mm, rested, taking, numbers):
     if rested != now["rested"]:
         now["rested"] = rested
         now["flags"] |= _RESTED
-        _change(now, now["fade_ns"])
+        _change(now, FADE_NS)
     if not taking:
         now["shown"] = 0
         now["faded_ns"] = now["fading_ns"]
@@ -173,9 +220,9 @@ def _decide(now, y_mm, rested, taking, numbers):
             now["begun"] = wanted
             now["shown_ns"] = 0
         now["shown"] = wanted
-        _change(now, now["pause_ns"] if now["paused"] else now["fade_ns"])
+        _change(now, PAUSE_FADE_NS if now["paused"] else FADE_NS)
     elif wanted != 0 and part != now["part"] and not seamless(numbers):
-        _change(now, now["fade_ns"])
+        _change(now, FADE_NS)
     now["part"] = part
     fading = now["faded_ns"] < now["fading_ns"]
     now["share"] = now["faded_ns"] / now["fading_ns"] if fading else 1.0
@@ -184,7 +231,7 @@ def _decide(now, y_mm, rested, taking, numbers):
 @_compiled
 def _remark(now, taking):
     """Set the flags that say what a tick was like."""
-    silent = now["time_ns"] - now["sampled_ns"] > now["silence_ns"]
+    silent = now["time_ns"] - now["sampled_ns"] > SILENCE_NS
     away = now["placed"] == 0 or now["turned"] or not taking or silent or now["flags"] & _RESTED
     unfelt = now["serial"] != 0 and not now["paused"] and away
     now["flags"] |= (
@@ -226,30 +273,6 @@ def _answer(numbers, at, before_s):
 
 
 @_compiled
-def recall(numbers, ints, floats, at):
-    """Compute the signals of ticks again from records that have no values of them.
-
-    They are those that there were if the records begin with the picture's first, and no switch was
-    pressed.
-
-    Parameters
-    ----------
-    numbers
-        The program that was wanted under the hand.
-    ints, floats
-        The records, of which velocity and time are used; the values of signals are filled in.
-    at : float64[AT]
-        Memory of the signals, and the time of the record before; for the ticks that come next.
-    """
-    for n in range(ints.shape[0]):
-        before_s = at[work.TIME]
-        at[work.TIME], at[work.VX], at[work.VY] = floats[n, SHOWN], floats[n, VX], floats[n, VY]
-        _answer(numbers, at, before_s)
-        for k in range(work.MOST_SIGNALS):
-            floats[n, SIGNAL + k] = at[work.SIGNAL + k]
-
-
-@_compiled
 def advance(
     state,
     own_ints,
@@ -277,7 +300,7 @@ def advance(
     Parameters
     ----------
     state, own_ints, own_floats, window, velocities, output, held, target, at
-        What is known from earlier ticks, and room to work in: `vbraille.engine.state.LoopState`.
+        What is known from earlier ticks, a `STATE`, and room to work in.
         The whole numbers and the numbers of a tick's record are the first of their kind in the
         state, of which there are views.
     numbers, table, scratch
@@ -306,7 +329,7 @@ def advance(
         unsent_ns = now_ns - now["sent_ns"]
         fading = now["faded_ns"] < now["fading_ns"]
         if unsent_ns > now["gap_ns"] and now["shown"] != 0 and not fading:
-            _change(now, now["catch_ns"])
+            _change(now, CATCH_NS)
         # A frame that went out late has only just moved the actuators.
         now["faded_ns"] += max(min(passed_ns, unsent_ns), 0)
         posed = poses[n, POSED] != 0.0
@@ -348,25 +371,28 @@ def advance(
 def replay(numbers, table, scratch, ints, floats, at, output, held, target, frames):
     """Make the frames of ticks again from their records, all of one picture and without a gap.
 
+    Signals are computed again. They are those that there were if the records begin with the
+    picture's first, and no switch was pressed.
+
     Parameters
     ----------
     numbers, table, scratch
         The program that was wanted under the hand.
     ints, floats
-        The records, of which part, flags, pose, velocity, time, share and signals are used.
+        The records, of which part, flags, pose, velocity, time and share are used.
     at : float64[AT]
-        Room for what a frame is evaluated at.
+        Memory of the signals, and the time of the record before.
     output, held, target : float64[rows, columns]
-        The frame written last, the one that the fade began with, and room for another; they are
-        changed, for the ticks that come next.
+        The frame written last, the one that the fade began with, and room for another; they and
+        `at` are changed, for the ticks that come next.
     frames : float64[n, rows, columns]
         What the actuators did, to fill.
     """
     for n in range(ints.shape[0]):
+        before_s = at[work.TIME]
         at[work.X], at[work.Y], at[work.THETA] = floats[n, X], floats[n, Y], floats[n, THETA]
         at[work.TIME], at[work.VX], at[work.VY] = floats[n, SHOWN], floats[n, VX], floats[n, VY]
-        for k in range(work.MOST_SIGNALS):
-            at[work.SIGNAL + k] = floats[n, SIGNAL + k]
+        _answer(numbers, at, before_s)
         flags, share, part = ints[n, FLAGS], floats[n, SHARE], ints[n, PART]
         _show(flags, share, part, numbers, table, scratch, at, output, held, target)
         if flags & _HELD:  # the actuators rested, though the loop goes on from its frame

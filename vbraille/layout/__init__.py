@@ -2,6 +2,5 @@
 
 from vbraille.layout.layout import Layout, cells_per_line, lay_out_text, wrap_text
 from vbraille.layout.lines import Line
-from vbraille.translate.book import Remarks
 
-__all__ = ["Layout", "Line", "Remarks", "cells_per_line", "lay_out_text", "wrap_text"]
+__all__ = ["Layout", "Line", "cells_per_line", "lay_out_text", "wrap_text"]

@@ -11,7 +11,6 @@ from vbraille.engine.constants import DIFFERENCE, MEAN
 from vbraille.errors import InputError
 from vbraille.simulation.exploring import Explorer
 from vbraille.simulation.hand import Area
-from vbraille.simulation.motion import SLACK
 from vbraille.simulation.recorded import Recorded
 from vbraille.wording import setting
 
@@ -41,7 +40,7 @@ class PosedPath:
     velocity_mm_s: NDArray[np.float64]
 
 
-def path_of(hand: Hand | Recorded, canvas: Canvas, span_mm: float, rate_hz: float) -> PosedPath:
+def path_of(hand: Hand, canvas: Canvas, span_mm: float, rate_hz: float) -> PosedPath:
     """Return the poses of a hand on its way over a picture.
 
     Parameters
@@ -60,24 +59,13 @@ def path_of(hand: Hand | Recorded, canvas: Canvas, span_mm: float, rate_hz: floa
     InputError
         If the hand does not go over pictures by itself.
     """
-    if isinstance(hand, Recorded):
-        course = hand.motion()
-    elif isinstance(hand, Explorer):
-        course = hand.read_page(Area(1, canvas.height_mm, -span_mm, canvas.width_mm))
-    else:
+    if not isinstance(hand, Explorer | Recorded):
         raise InputError(
             f"this hand does not go over a picture; give {setting('hand')} wide, wide:SPACING, "
             f"spot, spot:X,Y or recorded:FILE.csv"
         )
-    t_s = np.arange(1 + int(course.duration_s * rate_hz + SLACK)) / rate_hz
-    x_mm, y_mm, theta_rad = (
-        np.full(t_s.size, usual) if values is None else np.interp(t_s, course.t_s, values)
-        for values, usual in (
-            (course.x_mm, 0.0),
-            (course.y_mm, canvas.height_mm / 2),
-            (course.theta_rad, 0.0),
-        )
-    )
+    course = hand.read_page(Area(1, canvas.height_mm, -span_mm, canvas.width_mm))
+    t_s, x_mm, y_mm, theta_rad = course.sample(rate_hz, canvas.height_mm / 2)
     x_mm += span_mm / 2
     return PosedPath(t_s, x_mm, y_mm, theta_rad, _velocities(x_mm, y_mm, rate_hz))
 

@@ -15,7 +15,6 @@ from vbraille.pictures.loading import FileWatch, check_fits, load_scene
 from vbraille.reading.commands import WAYS, Where, both_ways, command
 from vbraille.reading.explored import Explored
 from vbraille.reading.outputs import Cue
-from vbraille.scene.checking import kind_of
 from vbraille.scene.measures import MOST_MM
 from vbraille.scene.signals import MOST_KEYS, Switch, packed
 from vbraille.scene.traversal import each
@@ -358,9 +357,7 @@ class Picture(Explored):
             self.say(f"nothing here{'' if place is None else self._nearest(place)}")
             return
         element = spot.element
-        kind, *inner = dict.fromkeys(
-            kind_of(one).replace("-", " ") for one in each(element.pattern)
-        )
+        kind, *inner = dict.fromkeys(one.kind.replace("-", " ") for one in each(element.pattern))
         parts = f" with {', '.join(inner)}" if inner else ""
         looks = f"{kind}, {self.aperture.sized(element.box)}{parts}"
         self.say(f"{element.name}: {element.description or looks}")

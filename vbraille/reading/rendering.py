@@ -18,8 +18,6 @@ from vbraille.reading.frames import print_of
 from vbraille.recording import Recorder, SceneRecorded
 from vbraille.signals import EAR
 from vbraille.simulation.hand import Area
-from vbraille.simulation.motion import SLACK
-from vbraille.simulation.recorded import Recorded
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -66,7 +64,7 @@ def render_reading(
     lines: Iterable[Line],
     layout: Layout,
     model: Model,
-    hand: Hand | Recorded,
+    hand: Hand,
     rate_hz: float,
     per_page: int = 0,
     *,
@@ -222,29 +220,25 @@ def _blocks(count: int) -> Iterator[slice]:
 
 
 def _walk(
-    lines: Iterator[Line], model: Model, hand: Hand | Recorded, rate_hz: float, per_page: int
+    lines: Iterator[Line], model: Model, hand: Hand, rate_hz: float, per_page: int
 ) -> Iterator[Stretch]:
     """Lines that are shown at once, and places along and down the page of the array's centre."""
     span_mm, geometry = model.display.span_mm, model.style.geometry
     x_mm = y_mm = np.zeros(0)
     while page := list(islice(lines, per_page or 1)):
         end_mm = max(geometry.extent_mm(len(line)) for line in page)
-        if isinstance(hand, Recorded):
-            motion = hand.motion()
-        elif per_page:
+        if per_page:
             motion = hand.read_page(Area(len(page), geometry.line_pitch_mm, -span_mm, end_mm))
         else:
             motion = hand.read_line(-span_mm, end_mm)
-        if not (isinstance(hand, Recorded) and x_mm.size):
-            at_s = np.arange(1 + math.floor(motion.duration_s * rate_hz + SLACK)) / rate_hz
-            x_mm = np.interp(at_s, motion.t_s, motion.x_mm) + span_mm / 2  # hands move the left
-            down_mm = np.zeros(motion.t_s.size) if motion.y_mm is None else motion.y_mm
-            y_mm = np.interp(at_s, motion.t_s, down_mm)
+        if not (hand.goes_on and x_mm.size):
+            _, x_mm, y_mm, _ = motion.sample(rate_hz)
+            x_mm = x_mm + span_mm / 2  # hands move the left
         end = None
-        if isinstance(hand, Recorded) and not per_page:  # it goes on from line to line
+        if hand.goes_on and not per_page:  # it goes on from line to line
             end = EndOfLine(span_mm, end_mm).find(x_mm)
         stop = x_mm.size if end is None else end + 1
         yield page, x_mm[:stop], y_mm[:stop]
         x_mm, y_mm = x_mm[stop:], y_mm[stop:]
-        if isinstance(hand, Recorded) and not x_mm.size:
+        if hand.goes_on and not x_mm.size:
             return  # the hand has recorded no more

@@ -66,3 +66,8 @@ class Pattern(Measured, frozen=True, kw_only=True, tag_field="kind"):
                 f"zoom_to is {ends:g}, and zoom_from {begins:g}, so that it is never there; "
                 "give zoom_to a larger number"
             )
+
+    @property
+    def kind(self) -> str:
+        """Kind as files have it, such as "linear-grating"."""
+        return str(self.__struct_config__.tag)

@@ -62,13 +62,15 @@ class Controls:
         self._due = sorted(events)
         self._typed: dict[int, ControlEvent] = {}  # ends of presses by keys, by their buttons
 
-    def advance(self, now_s: float) -> None:
-        """Do what is due by a time since the device began."""
-        while self._due and self._due[0].at_s <= now_s:
-            self._do(self._due.pop(0))
-        for button, event in list(self._typed.items()):
-            if event.at_s <= now_s:
-                self._do(self._typed.pop(button))
+    def advance(self, now_s: float) -> list[ControlEvent]:
+        """Do what is due by a time since the device began, and give it in order."""
+        due = [event for event in (*self._due, *self._typed.values()) if event.at_s <= now_s]
+        for event in due:
+            self._do(event)
+        if due:
+            self._due = [event for event in self._due if event.at_s > now_s]
+            self._typed = {n: event for n, event in self._typed.items() if event.at_s > now_s}
+        return due
 
     def type(self, key: str, now_s: float) -> str:
         """Do at once what a key stands for, and return a sentence; empty for any other key.

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.errors import check_range
-from vbraille.simulation.hand import Sweep
+from vbraille.simulation.hand import Hand, Sweep
 from vbraille.simulation.motion import MOST_MM, Motion
 
 if TYPE_CHECKING:
@@ -31,22 +31,12 @@ _SWING_S = 0.005  # from knot to knot of a path that swings
 _RATIO = (1 + math.sqrt(5)) / 2
 
 
-class Explorer:
-    """A hand that goes over a picture; a line it only crosses."""
-
-    def over(self, width_mm: float, height_mm: float) -> Motion:
-        """Return the motion of the array's centre over a canvas."""
-        raise NotImplementedError
+class Explorer(Hand):
+    """A hand that goes over a picture, which is its page; a line it only crosses."""
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
         """Return the motion along a line, to its end and back; see `hand.Hand`."""
         return Sweep(SPEED_MM_S).read_line(start_mm, end_mm)
-
-    def read_page(self, area: Area) -> Motion:
-        """Return the motion over the canvas that an area is; its lines do not matter."""
-        path = self.over(area.end_mm, area.height_mm)
-        half_span_mm = -area.start_mm / 2  # an array at the left stop stands there
-        return Motion(path.t_s, path.x_mm - half_span_mm, path.y_mm)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,11 +54,12 @@ class Wide(Explorer):
     def __post_init__(self) -> None:
         check_range("spacing", self.spacing_mm, 0.5, 1000, " mm")
 
-    def over(self, width_mm: float, height_mm: float) -> Motion:
-        """Return the motion of the array's centre over a canvas."""
-        corners = spiral(width_mm, height_mm, self.spacing_mm)
-        lengths_mm = np.hypot(*np.diff(corners))
-        return Motion(np.append(0.0, np.cumsum(lengths_mm)) / SPEED_MM_S, *corners)
+    def read_page(self, area: Area) -> Motion:
+        """Return the motion over the canvas that an area is; its lines do not matter."""
+        x_mm, y_mm = spiral(area.end_mm, area.height_mm, self.spacing_mm)
+        t_s = np.append(0.0, np.cumsum(np.hypot(np.diff(x_mm), np.diff(y_mm)))) / SPEED_MM_S
+        # The array's centre is on the spiral, and half its span left of that it is at the start.
+        return Motion(t_s, x_mm + area.start_mm / 2, y_mm)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,12 +78,12 @@ class Spot(Explorer):
         for place in self.at_mm or ():
             check_range("place", place, -MOST_MM, MOST_MM, " mm")
 
-    def over(self, width_mm: float, height_mm: float) -> Motion:
-        """Return the motion of the array's centre over a canvas."""
-        x_mm, y_mm = self.at_mm or (width_mm / 2, height_mm / 2)
+    def read_page(self, area: Area) -> Motion:
+        """Return the motion over the canvas that an area is; its lines do not matter."""
+        x_mm, y_mm = self.at_mm or (area.end_mm / 2, area.height_mm / 2)
         rate = SPEED_MM_S / (RADIUS_MM * math.hypot(1, _RATIO))
         t_s = np.arange(0, DURATION_S + _SWING_S / 2, _SWING_S)
-        x = x_mm + RADIUS_MM * np.sin(rate * t_s)
+        x = x_mm + area.start_mm / 2 + RADIUS_MM * np.sin(rate * t_s)
         return Motion(t_s, x, y_mm + RADIUS_MM * np.sin(_RATIO * rate * t_s))
 
 
@@ -118,27 +109,3 @@ def spiral(width_mm: float, height_mm: float, spacing_mm: float) -> NDArray[np.f
     x, y = np.array(corners).T
     moved = np.append(True, np.hypot(np.diff(x), np.diff(y)) > 0)
     return np.stack((x[moved], y[moved]))
-
-
-def parse_explorer(spec: str) -> Explorer:
-    """Return the hand of ``wide``, ``wide:SPACING``, ``spot`` or ``spot:X,Y``, in mm.
-
-    Raises
-    ------
-    ValueError
-        If a number is none, or out of range.
-    """
-    kind, _, rest = spec.partition(":")
-    numbers = [_number(part, spec) for part in rest.split(",")] if rest else []
-    if len(numbers) not in ((0, 1) if kind == "wide" else (0, 2)):
-        raise ValueError(f"the hand is {spec!r}; write wide:SPACING or spot:X,Y, in mm")
-    if kind == "wide":
-        return Wide(*numbers)
-    return Spot((numbers[0], numbers[1]) if numbers else None)
-
-
-def _number(text: str, spec: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise ValueError(f"{text!r} of the hand {spec!r} is not a number of mm") from None

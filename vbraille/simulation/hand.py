@@ -8,8 +8,9 @@ it turns round short of both.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -74,16 +75,6 @@ class Area:
         return self.lines * self.pitch_mm
 
 
-def area_on(height_mm: float, lines: int, pitch_mm: float, start_mm: float, end_mm: float) -> Area:
-    """Area of lines at the top of a surface; its foot is the surface's lower edge.
-
-    A hand that is not told how much of a page there is goes down there when it has read these
-    lines, which is below the last line of whatever page there is.
-    """
-    foot_mm = max(height_mm - lines * pitch_mm, 0.0)
-    return Area(lines, pitch_mm, start_mm, end_mm, foot_mm)
-
-
 def read_lines(read_line: Callable[[float, float], Motion], area: Area) -> Motion:
     """Return a motion over a page: along each line and back, down to the next, then to the foot.
 
@@ -94,20 +85,17 @@ def read_lines(read_line: Callable[[float, float], Motion], area: Area) -> Motio
     area
         Area that the lines take.
     """
-    times_s, places_mm, middles_mm = [], [], []
-    begun_s = 0.0
+    knots, begun_s = [], 0.0  # times and places x and y
     for line in range(area.lines):
         motion = read_line(area.start_mm, area.end_mm)
-        times_s.append(begun_s + motion.t_s)
-        places_mm.append(motion.x_mm)
-        middles_mm.append(np.full(motion.t_s.size, area.middle_mm(line)))
+        y_mm = np.full(motion.t_s.size, area.middle_mm(line))
+        knots.append((begun_s + motion.t_s, motion.x_mm, y_mm))
         begun_s += motion.duration_s + area.pitch_mm / RETURN_MM_S
     if area.foot_mm:
-        down_s = times_s[-1][-1] + (area.pitch_mm / 2 + area.foot_mm) / RETURN_MM_S
-        times_s.append(np.array([down_s, down_s + FOOT_S]))
-        places_mm.append(np.full(2, area.start_mm))
-        middles_mm.append(np.full(2, area.height_mm + area.foot_mm))
-    return Motion(*map(np.concatenate, (times_s, places_mm, middles_mm)))
+        down_s = knots[-1][0][-1] + (area.pitch_mm / 2 + area.foot_mm) / RETURN_MM_S
+        foot_mm = np.full(2, area.height_mm + area.foot_mm)
+        knots.append((down_s + np.array([0.0, FOOT_S]), np.full(2, area.start_mm), foot_mm))
+    return Motion(*np.concatenate(knots, axis=1))
 
 
 def drifting(
@@ -127,9 +115,18 @@ def _wave(t_s: NDArray[np.float64], random: np.random.Generator) -> NDArray[np.f
     return np.sin(2 * math.pi * (t_s[:, None] / periods_s + phases)) @ _SHARES
 
 
-class Hand(Protocol):
-    """A hand that reads line after line, or a page."""
+class Hand(ABC):
+    """A hand that reads line after line, or a page.
 
+    Attributes
+    ----------
+    goes_on : bool
+        Whether its one motion is that over a whole reading, and not over a line or a page.
+    """
+
+    goes_on = False
+
+    @abstractmethod
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
         """Read the next line: from its start, where the hand is, to its end and back.
 
@@ -141,7 +138,6 @@ class Hand(Protocol):
         ValueError
             If a place is beyond `MOST_MM`, or the end is left of the start.
         """
-        ...
 
     def read_page(self, area: Area) -> Motion:
         """Read all lines of a page, from the first to the last; y and θ are given if they change.
@@ -151,7 +147,7 @@ class Hand(Protocol):
         ValueError
             In the cases in which `read_line` raises it.
         """
-        ...
+        return read_lines(self.read_line, area)
 
 
 def along(start_mm: float, end_mm: float) -> Way:
@@ -165,7 +161,7 @@ def along(start_mm: float, end_mm: float) -> Way:
 
 
 @dataclass(frozen=True, slots=True)
-class Sweep:
+class Sweep(Hand):
     """A hand at constant speed, which comes back at `RETURN_MM_S`.
 
     Parameters
@@ -193,12 +189,8 @@ class Sweep:
         way.move(start_mm, RETURN_MM_S)
         return way.motion()
 
-    def read_page(self, area: Area) -> Motion:
-        """Return the motion over all lines of a page, each along its middle; see `Hand`."""
-        return read_lines(self.read_line, area)
 
-
-class Still:
+class Still(Hand):
     """A hand that stays where it is, until a person moves it in the live view."""
 
     def read_line(self, start_mm: float, end_mm: float) -> Motion:
@@ -206,10 +198,6 @@ class Still:
         way = along(start_mm, end_mm)
         way.wait(STILL_S)
         return way.motion()
-
-    def read_page(self, area: Area) -> Motion:
-        """Return a motion that stays at the start of a page; see `Hand`."""
-        return self.read_line(area.start_mm, area.start_mm)
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,7 +261,7 @@ FLUENT = Habits(
 )
 
 
-class HumanHand:
+class HumanHand(Hand):
     """A hand that reads by habits; equal seeds read equal lines in the same way.
 
     Parameters

@@ -10,10 +10,7 @@ import select
 import socket
 import time
 from contextlib import suppress
-from dataclasses import replace
 from typing import TYPE_CHECKING, Final
-
-import numpy as np
 
 from vbraille.carriers import latero
 from vbraille.devices.latero.device import DISPLAY
@@ -22,7 +19,6 @@ from vbraille.errors import InputError
 from vbraille.simulation.carriage import Carriage, area_of
 from vbraille.simulation.controls import Controls
 from vbraille.simulation.lateroboard import LateroBoard
-from vbraille.simulation.recorded import Recorded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -32,6 +28,7 @@ if TYPE_CHECKING:
 
 # Counts of encoders 0, 1 and 2 at angle 0: any, and none of them 0, for clients must mind them.
 OFFSETS: Final = (4452, 4_294_960_000, 120_034)
+_NS_PER_US: Final = 1000
 _ROOM_BYTES: Final = 2048
 _LOOK_S: Final = 0.05
 # A client that asks nothing for so long has gone, and the hand goes back to the lower left.
@@ -49,14 +46,13 @@ class LateroCarriage(Carriage):
         Lines of the page, and how far apart they are; the first begins at the top.
     """
 
-    def __init__(self, hand: Hand | Recorded, lines: int = 1, pitch_mm: float = 10.0) -> None:
-        if isinstance(hand, Recorded) and hand.y_mm is None:  # it reads the first line
-            hand = replace(hand, y_mm=np.full(hand.t_s.size, pitch_mm / 2))
+    def __init__(self, hand: Hand, lines: int = 1, pitch_mm: float = 10.0) -> None:
         super().__init__(DISPLAY, hand, area_of(DISPLAY, pitch_mm, lines), latero.HEIGHT_MM)
 
     def encoders(self, now_us: int) -> tuple[int, int, int, int]:
         """Return the counts of the four encoders; the last stands still."""
-        return *latero.encoders_of(latero.joints_at(*self.at(now_us)), OFFSETS), 0
+        place = self.at(now_us * _NS_PER_US)
+        return *latero.encoders_of(latero.joints_at(*place), OFFSETS), 0
 
 
 class LateroSimulator:
@@ -182,6 +178,6 @@ class LateroSimulator:
             self.board.buttons = self._controls.buttons & ((1 << len(BUTTONS)) - 1)
         if self._asked_us is not None and now_us - self._asked_us > GONE_S * 1e6:
             self._asked_us = self._first_us = None
-            self.carriage.go_back(now_us)
+            self.carriage.go_back(now_us * _NS_PER_US)
             if not self.board.at_rest:
                 self._say("no client asks, and blades are not at rest")

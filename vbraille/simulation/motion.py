@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from vbraille.display import Display
+
 LEAST_KNOT_S = 1e-6  # a shorter time is made as long, so that time always increases
 # Rounding error of ticks and samples at tenths or thousandths of a second.
 SLACK = 1e-9
@@ -62,10 +64,18 @@ class Motion:
         """Duration of the motion: the time of its last knot."""
         return float(self.t_s[-1])
 
-    def sample(self, rate_hz: float) -> NDArray[np.float64]:
-        """Places along x at multiples of 1 / rate, up to the end; float64[n], mm."""
-        stop = 1 + math.floor(self.duration_s * rate_hz + SLACK)
-        return np.interp(np.arange(stop) / rate_hz, self.t_s, self.x_mm)
+    def sample(self, rate_hz: float, y_mm: float = 0.0) -> NDArray[np.float64]:
+        """Times at multiples of 1 / rate up to the end, and x, y and θ then; float64[4, n].
+
+        Where y does not change it is the given one, and θ is 0.
+        """
+        t_s = np.arange(1 + math.floor(self.duration_s * rate_hz + SLACK)) / rate_hz
+        ways = zip((self.x_mm, self.y_mm, self.theta_rad), (0.0, y_mm, 0.0), strict=True)
+        places = (
+            np.full(t_s.size, usual) if way is None else np.interp(t_s, self.t_s, way)
+            for way, usual in ways
+        )
+        return np.stack((t_s, *places))
 
 
 class Way:
@@ -104,58 +114,44 @@ class Course:
 
     Parameters
     ----------
-    x_mm, y_mm, theta_rad
-        Place where it stands at first, as in `Motion`.
-    free_y, turns
-        Whether it goes along y, and turns; a hand that does not has 0 there.
+    display
+        Display that the hand moves; along an axis that its carriage does not have the hand stays
+        at 0.
+    home
+        Place x and y where it stands at first, and its angle, as in `Motion`.
     now_ns
         Time at which it stands there.
 
     Attributes
     ----------
-    t_s : float64[n]
-        Times of the knots of what is under way, or was last, from 0.
     begun_ns : int
-        When it began.
+        When what is under way, or was last, began.
     """
 
-    def __init__(
-        self,
-        x_mm: float,
-        y_mm: float = 0.0,
-        *,
-        free_y: bool,
-        turns: bool,
-        now_ns: int = 0,
-    ) -> None:
-        self._free_y, self._turns = free_y, turns
+    def __init__(self, display: Display, home: Sequence[float], now_ns: int = 0) -> None:
+        self._axes = 1.0, float(display.height_mm > 0), float(display.turns)
         self.begun_ns = now_ns
-        self.t_s: NDArray[np.float64] = np.zeros(1)
-        self._ways = [np.full(1, place) for place in (x_mm, y_mm, 0.0)]
+        self._t_s = np.zeros(1)
+        self._ways = [np.full(1, place) for place in home]
 
     def is_over(self, now_ns: Any) -> Any:
         """Tell whether the hand is at the end of its motion, at a time or at each of an array."""
-        return (now_ns - self.begun_ns) / _NS_PER_S >= self.t_s[-1]
+        return (now_ns - self.begun_ns) / _NS_PER_S >= self._t_s[-1]
 
-    def at(self, now_ns: Any) -> tuple[Any, Any, Any]:
+    def at(self, now_ns: Any) -> list[Any]:
         """Return the place x and y, and the angle, at a time, or at each of an array of times."""
         t_s = (now_ns - self.begun_ns) / _NS_PER_S
-        x_mm, y_mm, theta_rad = self._ways
-        return (
-            np.interp(t_s, self.t_s, x_mm),
-            np.interp(t_s, self.t_s, y_mm) if self._free_y else 0.0,
-            np.interp(t_s, self.t_s, theta_rad) if self._turns else 0.0,
-        )
+        return [np.interp(t_s, self._t_s, way) for way in self._ways]
 
     def rest(self, now_ns: int) -> Motion | None:
         """Return the motion that is left of the present one; None if it is over."""
         t_s = (now_ns - self.begun_ns) / _NS_PER_S
-        later = self.t_s > t_s
+        later = self._t_s > t_s
         if not later.any():
             return None
         here = zip(self.at(now_ns), self._ways, strict=True)
         ways = (np.append(now, way[later]) for now, way in here)
-        return Motion(np.append(0.0, self.t_s[later] - t_s), *ways)
+        return Motion(np.append(0.0, self._t_s[later] - t_s), *ways)
 
     def go_to(
         self,
@@ -165,23 +161,18 @@ class Course:
         least_s: float = 0.0,
     ) -> None:
         """Go straight to a place; that takes no time if the hand is there, unless it must."""
-        here = self.at(now_ns)
-        x_mm, y_mm, theta_rad = (abs(there - begun) for begun, there in zip(here, to, strict=True))
-        far_mm = math.hypot(x_mm, y_mm if self._free_y else 0.0)
-        turn_s = theta_rad / TURN_RAD_S if self._turns else 0.0
-        self.begun_ns = now_ns
-        self.t_s = np.array([0.0, max(far_mm / speed_mm_s, turn_s, least_s)])
-        self._ways = [np.array(ends) for ends in zip(here, to, strict=True)]
+        here = np.array(self.at(now_ns))
+        there = np.array(to) * self._axes
+        x_mm, y_mm, theta_rad = np.abs(there - here)
+        way_s = max(math.hypot(x_mm, y_mm) / speed_mm_s, theta_rad / TURN_RAD_S, least_s)
+        self.begun_ns, self._t_s = now_ns, np.array([0.0, way_s])
+        self._ways = list(np.stack((here, there), axis=1))
 
     def follow(self, motion: Motion, now_ns: int) -> None:
         """Go along a motion, and first to where it begins; y and θ stay if it has none."""
         given = zip(self.at(now_ns), (motion.x_mm, motion.y_mm, motion.theta_rad), strict=True)
         ways = [np.full(motion.t_s.size, here) if way is None else way for here, way in given]
         self.go_to([float(way[0]) for way in ways], now_ns)
-        approach_s = float(self.t_s[-1])
-        if approach_s > 0:
-            self.t_s = np.append(0.0, motion.t_s + approach_s)
-            begun = zip(self._ways, ways, strict=True)
-            self._ways = [np.append(here[0], way) for here, way in begun]
-        else:
-            self.t_s, self._ways = motion.t_s, ways
+        self._t_s = np.append(0.0, self._t_s[-1] + motion.t_s)
+        begun = zip(self._ways, ways, self._axes, strict=True)
+        self._ways = [np.append(here[0], way * axis) for here, way, axis in begun]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,13 +10,14 @@ import numpy as np
 from vbraille.csvfiles import SEPARATORS, parse_csv
 from vbraille.errors import InputError
 from vbraille.files import read_text
+from vbraille.simulation.hand import Hand
 from vbraille.simulation.motion import MOST_MM, SLACK, Motion
 from vbraille.wording import nearest
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
+    from vbraille.simulation.hand import Area
 
 MOST_BYTES = 100_000_000
 # Ours: what a hand does in half a second cannot be told from its two ends.
@@ -27,27 +27,27 @@ COLUMNS = {"t_s": 1e9, "x_mm": MOST_MM, "y_mm": MOST_MM, "theta_deg": 360_000.0}
 _NEEDED = ("t_s", "x_mm")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Recorded:
+class Recorded(Hand):
     """A hand that was recorded: one motion over the whole reading, not one for each line.
 
     Parameters
     ----------
-    t_s : float64[n]
-        Time of each sample, beginning anywhere, increasing by at most `MAX_GAP_S`.
-    x_mm, y_mm, theta_rad : float64[n]
-        Places and angles of the array as in `Motion`; the last two are None if they were not
-        recorded.
+    motion
+        That motion.
     """
 
-    t_s: NDArray[np.float64]
-    x_mm: NDArray[np.float64]
-    y_mm: NDArray[np.float64] | None = None
-    theta_rad: NDArray[np.float64] | None = None
+    goes_on = True
 
-    def motion(self) -> Motion:
-        """Return the whole reading, its times shifted to begin at 0."""
-        return Motion(self.t_s - self.t_s[0], self.x_mm, self.y_mm, self.theta_rad)
+    def __init__(self, motion: Motion) -> None:
+        self.motion = motion
+
+    def read_line(self, start_mm: float, end_mm: float) -> Motion:  # noqa: ARG002
+        """Return the whole motion, whatever the line."""
+        return self.motion
+
+    def read_page(self, area: Area) -> Motion:  # noqa: ARG002
+        """Return the whole motion, whatever the page."""
+        return self.motion
 
 
 def load_recorded(path: Path | str) -> Recorded:
@@ -99,9 +99,10 @@ def load_recorded(path: Path | str) -> Recorded:
             f"{path}, line {sheet.lines[at + 1]}: t_s is {steps_s[at]:g} s later than in "
             f"the sample before; it must be later, by at most {MAX_GAP_S:g} s"
         )
-    theta_deg = columns.get("theta_deg")
+    t_s, theta_deg = columns["t_s"], columns.get("theta_deg")
     theta_rad = None if theta_deg is None else np.deg2rad(theta_deg)
-    return Recorded(columns["t_s"], columns["x_mm"], columns.get("y_mm"), theta_rad)
+    motion = Motion(t_s - t_s[0], columns["x_mm"], columns.get("y_mm"), theta_rad)
+    return Recorded(motion)
 
 
 def _number(cell: str, name: str, where: str) -> float:

@@ -12,10 +12,9 @@ from vbraille.devices.base import Device
 from vbraille.devices.events import Button, HandDone, HandHeld, Knob
 from vbraille.display import Pose
 from vbraille.errors import InputError, check_range
+from vbraille.simulation.carriage import Carriage
 from vbraille.simulation.controls import MOST_BUTTONS, Controls, parse_moves
 from vbraille.simulation.hand import STILL_S, Area, Still
-from vbraille.simulation.motion import Course
-from vbraille.simulation.recorded import Recorded
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.steering import GlideTo, Hold, LetGo, ReadLine, ReadPage
 from vbraille.wording import setting
@@ -60,7 +59,7 @@ class SimulatedDevice(Device):
 
     Attributes
     ----------
-    hand : Hand or Recorded or None
+    hand : Hand or None
         As it was given.
     levels : int64[rows, columns]
         Levels that were last sent to the actuators, 0 … info.levels - 1.
@@ -72,25 +71,21 @@ class SimulatedDevice(Device):
         self,
         info: Display,
         now_ns: Callable[[], int] = time.monotonic_ns,
-        hand: Hand | Recorded | None = None,
+        hand: Hand | None = None,
         presses: Sequence[ControlEvent] = (),
     ) -> None:
         self.display = info
         self.hand = hand
+        self.levels = np.zeros(info.shape, np.int64)
+        self.frames = 0
+        self._now_ns, self._opened_ns = now_ns, now_ns()
         self._controls = Controls(presses)
-        self._opened_ns = now_ns()
+        self._carriage = Carriage(info, hand, now_ns=self._opened_ns)
+        self._course = self._carriage.course
         self._events: list[Event] = []
         self._held_ns: int | None = None  # when a person who holds the hand last moved it
         self._left: Motion | None = None  # what the hand had not done yet when it was taken
         self._ordered = False  # whether an order is not done yet
-        self._has_set_out = False  # whether a recorded hand has set out
-        self._is_free = True  # whether no order came yet: it reads over the whole travel
-        self._now_ns = now_ns
-        self.levels = np.zeros(info.shape, np.int64)
-        self.frames = 0
-        self._course = Course(
-            -info.span_mm, free_y=info.height_mm > 0, turns=info.turns, now_ns=now_ns()
-        )
 
     def go_by(self, now_ns: Callable[[], int]) -> None:
         """Use another clock from now on; a motion goes on from where it has come to."""
@@ -115,23 +110,23 @@ class SimulatedDevice(Device):
 
     def take_events(self) -> Sequence[Event]:
         """Return moves of buttons and knobs since the last call, and what the hand has done."""
-        controls, now_ns = self._controls, self._now_ns()
+        now_ns = self._now_ns()
         if self._ordered and self._course.is_over(now_ns):
             self._ordered = False
             self._events.append(HandDone(now_ns))
-        before = controls.buttons
-        controls.advance((now_ns - self._opened_ns) / NS_PER_S)
-        for button in range(1, MOST_BUTTONS + 1):
-            bit = 1 << (button - 1)
-            if (before ^ controls.buttons) & bit:
-                self.press(button, pressed=bool(controls.buttons & bit))
+        for move in self._controls.advance((now_ns - self._opened_ns) / NS_PER_S):
+            if move.knob:
+                self.turn(move.number, move.value)
+            else:
+                self.press(move.number, pressed=bool(move.value))
         told, self._events = self._events, []
         return told
 
     def obey(self, order: HandOrder) -> None:
         """Have the hand follow an order from now on; a person who holds it goes first."""
+        now_ns = self._now_ns()
         if isinstance(order, Hold):
-            self._be_held(order, self._now_ns())
+            self._be_held(order, now_ns)
         elif isinstance(order, LetGo):
             if self._held_ns is not None:
                 self._held_ns = None
@@ -139,8 +134,8 @@ class SimulatedDevice(Device):
                 if self._left is not None:
                     self.move(self._left)
         elif self._held_ns is None:
-            self._ordered, self._is_free = True, False
-            self._do(order)
+            self._ordered = True
+            self._do(order, now_ns)
 
     def _be_held(self, at: Hold, now_ns: int) -> None:
         """Have the hand go where a person holds it."""
@@ -154,8 +149,7 @@ class SimulatedDevice(Device):
         info = self.display
         way_mm = min(max(at.x_mm + info.span_mm / 2, 0.0), info.travel_mm)
         y_mm = min(max(at.y_mm, 0.0), info.height_mm)
-        to = way_mm - info.span_mm, y_mm, at.theta_rad if info.turns else 0.0
-        self._course.go_to(to, now_ns, HELD_MM_S, since_s)
+        self._course.go_to((way_mm - info.span_mm, y_mm, at.theta_rad), now_ns, HELD_MM_S, since_s)
 
     def until_done(self, times_ns: NDArray[np.int64]) -> int:
         """Return the number of given times that come until the hand has done its order.
@@ -166,19 +160,19 @@ class SimulatedDevice(Device):
         done = np.asarray(self._course.is_over(times_ns))
         return int(done.argmax()) + 1 if self._ordered and done.any() else times_ns.size
 
-    def _do(self, order: HandOrder) -> None:
+    def _do(self, order: HandOrder, now_ns: int) -> None:
         """Have the hand follow an order; a recorded hand sets out with the first and goes on."""
-        hand, home_mm = self.hand, -self.display.span_mm
-        course, now_ns = self._course, self._now_ns()
+        hand, home_mm, here = self.hand, -self.display.span_mm, self._course.at(now_ns)
+        if hand is None or not hand.goes_on:
+            self._carriage.stop()
         if isinstance(order, GlideTo):
-            to = order.x_mm + home_mm / 2, order.y_mm, course.at(now_ns)[2]
-            course.go_to(to, now_ns, order.speed_mm_s)
+            to = order.x_mm + home_mm / 2, order.y_mm, here[2]
+            self._course.go_to(to, now_ns, order.speed_mm_s)
         elif isinstance(hand, Still):
-            course.go_to(course.at(now_ns), now_ns, HELD_MM_S, STILL_S)
-        elif isinstance(hand, Recorded):
-            if not self._has_set_out:
-                self.move(hand.motion())
-            self._has_set_out = True
+            self._course.go_to(here, now_ns, least_s=STILL_S)
+        elif hand is not None and hand.goes_on:
+            self._carriage.set_out()
+            self._carriage.at(now_ns)
         elif hand is not None and isinstance(order, ReadLine):
             self.move(hand.read_line(home_mm, order.end_mm))
         elif hand is not None and isinstance(order, ReadPage):
@@ -192,18 +186,19 @@ class SimulatedDevice(Device):
     def read(self) -> Pose | None:
         """Return the pose of the carriage now, to the nearest count of its encoders."""
         now_ns = self._now_ns()
-        if self._is_free and self.frames and self._course.is_over(now_ns):
-            self._do(ReadLine(self.display.travel_mm - self.display.span_mm))
-        return Pose(now_ns, *map(float, self.poses_at(now_ns)))
+        if self.frames:  # as long as no order comes it reads over the whole travel
+            self._carriage.set_out()
+        return Pose(now_ns, *map(float, self._poses(self._carriage.at(now_ns))))
 
-    def poses_at(self, times_ns: Any) -> tuple[Any, Any, Any]:
-        """Return x and y in mm, and θ in radians, at a time or at each of an array of times."""
-        info = self.display
-        hand_mm, y_mm, theta_rad = self._course.at(times_ns)
-        way_mm = np.minimum(np.maximum(hand_mm + info.span_mm, 0.0), info.travel_mm)
-        x_mm = np.rint(way_mm * info.counts_per_mm) / info.counts_per_mm - info.span_mm / 2
-        y_mm = np.minimum(np.maximum(y_mm, 0.0), info.height_mm)
-        return x_mm, np.rint(y_mm * info.counts_per_mm) / info.counts_per_mm, theta_rad
+    def poses_at(self, times_ns: NDArray[np.int64]) -> tuple[Any, Any, Any]:
+        """Return x and y in mm, and θ in radians, at each of an array of times."""
+        return self._poses(self._carriage.places_at(times_ns))
+
+    def _poses(self, places: tuple[Any, Any, Any]) -> tuple[Any, Any, Any]:
+        way_mm, y_mm, theta_rad = places
+        counts = self.display.counts_per_mm
+        x_mm = np.rint(way_mm * counts) / counts - self.display.span_mm / 2
+        return x_mm, np.rint(y_mm * counts) / counts, theta_rad
 
     def _send(self, frame: NDArray[np.float64]) -> None:
         np.rint(frame * (self.display.levels - 1), out=self.levels, casting="unsafe")

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.simulation.hand import Area, Hand
     from vbraille.simulation.pty import Port
-    from vbraille.simulation.recorded import Recorded
 
 _NS_PER_S: Final = 1_000_000_000
+_NS_PER_US: Final = 1000
 _TICK_NS: Final = 1_000_000
 STALL_EVERY_S: Final = 1.0
 UNPLUGGED_S: Final = 0.3
@@ -166,7 +166,7 @@ class Simulator:
     def __init__(
         self,
         display: Display,
-        hand: Hand | Recorded,
+        hand: Hand,
         port: Port,
         *,
         say: Callable[[str], None],
@@ -286,12 +286,12 @@ class Simulator:
         controller, now_us = self.controller, self.now_us
         self._ticks += 1
         self._move_controls()
-        at = self._carriage.at(now_us)
+        way_mm, y_mm, theta_rad = self._carriage.at(now_us * _NS_PER_US)
         off_mm = _OFF_PLACE_MM if self._faults.defect is Defect.OFF_PLACE else 0.0
         counts = self._info["counts_per_mm"]
-        controller.x = round((at.way_mm + off_mm) * counts[0])
-        controller.y = round(at.y_mm * counts[-1])
-        controller.turn = round(at.theta_rad / math.tau * self._info["counts_per_turn"])
+        controller.x = round((way_mm + off_mm) * counts[0])
+        controller.y = round(y_mm * counts[-1])
+        controller.turn = round(theta_rad / math.tau * self._info["counts_per_turn"])
         line, now_ns = controller.tick(now_us), time.monotonic_ns()
         if line and not self._is_stalled and now_ns >= self._started_ns:
             self._out.put(line, now_ns)

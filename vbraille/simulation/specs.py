@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from urllib.parse import urlencode
 
 from vbraille.errors import InputError
 from vbraille.simulation.hand import DEVICE, FLUENT, HumanHand, Still, Sweep
-from vbraille.simulation.motion import SPEED_BOUNDS_MM_S
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.simulation.hand import Hand
-    from vbraille.simulation.recorded import Recorded
 
 HABITS = {"slow": DEVICE, "device": DEVICE, "fluent": FLUENT}
 STILL = "still"  # name of the hand that only moves in the live view
 
 
-def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Recorded:
+def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand:
     """Return the hand that a spec describes.
 
     Parameters
@@ -37,6 +35,7 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
         If there is no such hand, a number is out of range, or the file cannot be used.
     """
     kind, _, rest = spec.partition(":")
+    numbers = [_number(text) for text in rest.split(",")] if rest else []
     if spec == STILL and pointed:
         return Still()
     if spec == STILL:
@@ -48,21 +47,33 @@ def parse_hand(spec: str, seed: int = 1, *, pointed: bool = False) -> Hand | Rec
         if spec in HABITS:
             return HumanHand(HABITS[spec], seed)
         if kind == "sweep":
-            return Sweep(_speed(rest))
+            return Sweep(_number(rest))
         if kind == "recorded" and rest:
             from vbraille.simulation.recorded import load_recorded
 
             return load_recorded(rest)
-        if kind in ("wide", "spot"):  # a hand is loaded when it is asked for
-            from vbraille.simulation.exploring import parse_explorer
+        if kind in ("wide", "spot"):
+            from vbraille.simulation.exploring import Spot, Wide
 
-            return parse_explorer(spec)
+            if kind == "wide" and len(numbers) < 2:
+                return Wide(*numbers)
+            if kind == "spot" and len(numbers) in (0, 2):
+                return Spot((numbers[0], numbers[1]) if numbers else None)
+            raise InputError(f"the hand is {spec!r}; write wide:SPACING or spot:X,Y, in mm")
     except ValueError as error:
         raise InputError(str(error)) from None
     raise InputError(
         f"unknown hand {spec!r}; give sweep:SPEED in mm/s, slow, fluent or recorded:FILE, "
         f"or wide or spot:X,Y to go over a picture"
     )
+
+
+def _number(text: str) -> Any:
+    """Number that a text is, or the text, which the hand refuses."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def is_simulated(device: str) -> bool:
@@ -93,13 +104,3 @@ def device_spec(device: str, hand: str | None, seed: int) -> str:
     if not is_simulated(device) or hand is None:
         return device
     return f"sim:?{urlencode({'hand': hand, 'seed': seed})}"
-
-
-def _speed(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        least, most = SPEED_BOUNDS_MM_S
-        raise ValueError(
-            f"sweep speed is {text!r}; it must be a number, {least:g} to {most:g} mm/s"
-        ) from None

@@ -2,10 +2,9 @@
 
 from vbraille.braille.cells import Cells
 from vbraille.translate.blocks import Block, BlockKind, Mark, MarkKind
-from vbraille.translate.book import Book, Remarks, describe
+from vbraille.translate.book import Book, remarks
 from vbraille.translate.formats import FORMATS, open_source, text_source
 from vbraille.translate.languages import TableInfo, find_table, has_tables, list_tables, tables_of
-from vbraille.translate.liblouis import liblouis_version
 from vbraille.translate.source import Heading, Source
 from vbraille.translate.spellings import Undefined
 from vbraille.translate.tables import BrailleTable, choose_table, six_dot_table, translate_text
@@ -20,17 +19,15 @@ __all__ = [
     "Heading",
     "Mark",
     "MarkKind",
-    "Remarks",
     "Source",
     "TableInfo",
     "Undefined",
     "choose_table",
-    "describe",
     "find_table",
     "has_tables",
-    "liblouis_version",
     "list_tables",
     "open_source",
+    "remarks",
     "six_dot_table",
     "tables_of",
     "text_source",

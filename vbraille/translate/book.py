@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections import Counter
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import groupby
 from typing import TYPE_CHECKING
 
@@ -19,7 +19,7 @@ from vbraille.translate.undefined import Written
 from vbraille.wording import count, setting
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterable
 
     from vbraille.translate.blocks import Block
     from vbraille.translate.source import Source
@@ -72,81 +72,58 @@ class Book:
         self.source, self.table = source, table
         self.language, self.grade, self.switch = language, grade, switch
         self.otherwise: dict[int, Counter[tuple[Kind, str]]] = {}
-        self._cells = lru_cache(_REMEMBERED)(self._make)
-        self._tables: dict[str, BrailleTable] = {}
-        self._scripts: set[str] = set()  # scripts that a note was made on
+        self._cells = lru_cache(_REMEMBERED)(self._translate)
+        self._table_for = cache(self._find_table)
 
     def cells(self, block: Block) -> Cells:
-        """Cells of a block of the source; they know the places that they stand for.
-
-        Raises
-        ------
-        ValueError
-            If the block has to be translated and there is no table.
-        """
+        """Cells of a block of the source; they know the places that they stand for."""
         return self._cells(block)
 
     def notes(self) -> list[str]:
         """Sentences on the source and the table that are due now; each is given once."""
         return self.source.notes()
 
-    def _make(self, block: Block) -> Cells:
+    def _translate(self, block: Block) -> Cells:
         if block.cells is not None:
             own = block.cells
             return Cells(own.masks, own.starts - int(own.starts[:1].sum()) + block.start, block.end)
-        if self.table is None:
-            raise ValueError(f"{self.source.name} has text in it; give its book a braille table")
-        written = Written(b"", [])
-        for table, start, text, language in self._passages(block):
-            part = table.write(text, cut_marks(block.marks, start, start + len(text)))
-            if table is not self.table:
-                part = self._between_signs(part, language, block.text[start + len(text) :][:1])
-            written.masks += part.masks
-            written.places += [start + place for place in part.places]
-            written.otherwise += part.otherwise
-        if written.otherwise:
-            self.otherwise[block.number] = written.otherwise
-            self._note_script(block, written.otherwise)
-        return to_cells(written, len(block.text), block.start)
-
-    def _passages(self, block: Block) -> Iterator[tuple[BrailleTable, int, str, str]]:
-        """Passages of a block by their tables: the table, where they begin, the text, the tag."""
         tags = [block.language] * len(block.text)
         for mark in block.marks:  # inner ones come after those around them
             if mark.kind is MarkKind.LANGUAGE:
                 tags[mark.start : mark.end] = [mark.target] * (mark.end - mark.start)
-        start = 0
-        for table, run in groupby(tags, self._table_for):
-            these = list(run)
-            stop = start + len(these)
-            yield table, start, block.text[start:stop], these[0]
-            start = stop
-
-    def _table_for(self, language: str) -> BrailleTable:
-        """Table of a language; the book's own if that is its language, or there is none."""
         assert self.table is not None
-        if not language or not self.switch:
-            return self.table
-        if language not in self._tables:
-            self._tables[language] = self._find_table(language)
-        return self._tables[language]
+        written, start = Written(), 0
+        for table, run in groupby(tags, self._table_for):
+            tag, *more = run
+            stop = start + 1 + len(more)
+            part = table.write(block.text[start:stop], cut_marks(block.marks, start, stop))
+            if table is not self.table:
+                part = self._between_signs(part, tag, block.text[stop : stop + 1])
+            written.add(part, start)
+            start = stop
+        if written.otherwise:
+            self.otherwise[block.number] = written.otherwise
+            self._note_script(block, self.table)
+        return to_cells(written, len(block.text), block.start)
 
     def _find_table(self, language: str) -> BrailleTable:
+        """Table of a passage's language; the book's own if that is its language, or it has none."""
         own = self.table
         assert own is not None
-        named = own.info.language or own.name.partition("-")[0]
-        known = [tag for tag in (self.language, self.source.language) if tag] or [named]
+        if not language or not self.switch:
+            return own
+        known = [tag for tag in (self.language, self.source.language) if tag]
+        known = known or [own.info.language or own.name.partition("-")[0]]
         try:
             usual = find_table(language)
             if usual in (own.name, *map(_named, known)):
                 return own
-            found = BrailleTable(_named(language, self.grade, usual), own.undefined)
-            if found.eight_dots and not own.eight_dots:
-                six = six_dot_table(language)
-                found = own if six is None else BrailleTable(six, own.undefined)
+            name = _named(language, self.grade) or usual
+            if BrailleTable(name).eight_dots and not own.eight_dots:
+                name = six_dot_table(language) or own.name
+            return own if name == own.name else BrailleTable(name, own.undefined)
         except InputError:
             return own
-        return found
 
     def _between_signs(self, part: Written, tag: str, following: str) -> Written:
         """A passage in another language between the signs that say so."""
@@ -156,37 +133,32 @@ class Book:
         if not words:
             return part
         first, end = words[0][0], words[-1][1]
-        language = tag.replace("_", "-").partition("-")[0].strip().lower()
+        language = re.split("[-_]", tag.strip().lower())[0]
         if not own.is_ueb:
             opening, closing = own.brackets
-            signs = {
-                first: own.write(f"{opening}{language}:").masks,
-                end: own.write(closing).masks,
-            }
-        elif len(words) <= _UEB_WORDS:
-            signs = dict.fromkeys((start for start, _ in words), _UEB_WORD)
-            if following.strip() and part.masks[-1]:
-                signs[end] = _UEB_WORD_END
-        else:
+            before, after = own.write(f"{opening}{language}:"), own.write(closing)
+            signs = [(first, before.masks), (end, after.masks)]
+        elif len(words) > _UEB_WORDS:
             letters = Cells.from_brf(language).masks.tobytes()
-            signs = {first: _UEB_OPENING + letters + _UEB_OPENED, end: _UEB_CLOSING}
-        for cell, sign in sorted(signs.items(), reverse=True):
+            signs = [(first, _UEB_OPENING + letters + _UEB_OPENED), (end, _UEB_CLOSING)]
+        else:
+            signs = [(start, _UEB_WORD) for start, _ in words]
+            if following.strip() and part.masks[-1]:
+                signs.append((end, _UEB_WORD_END))
+        for cell, sign in reversed(signs):
             part.masks = part.masks[:cell] + sign + part.masks[cell:]
             place = part.places[min(cell, len(part.places) - 1)]
             part.places[cell:cell] = [place] * len(sign)
         return part
 
-    def _note_script(self, block: Block, otherwise: Counter[tuple[Kind, str]]) -> None:
-        """Note once that most of a block is in a script that its table does not know."""
-        signs = [part[0] for kind, part in otherwise.elements() if kind is Kind.MARKED]
-        marked = list(filter(str.isalpha, signs))
-        if self.table is None or len(marked) * 2 <= sum(map(str.isalpha, block.text)):
-            return
-        script = unicodedata.name(marked[0], "unknown").partition(" ")[0].capitalize()
-        if script not in self._scripts:
-            self._scripts.add(script)
+    def _note_script(self, block: Block, table: BrailleTable) -> None:
+        """Note that most of a block is in a script that its table does not know."""
+        parts = self.otherwise[block.number].elements()
+        marked = [part[0] for kind, part in parts if kind is Kind.MARKED and part[0].isalpha()]
+        if len(marked) * 2 > sum(map(str.isalpha, block.text)):
+            script = unicodedata.name(marked[0], "unknown").partition(" ")[0].capitalize()
             self.source.note(
-                f"most of this passage is in {script} letters, which the table {self.table.name} "
+                f"most of this passage is in {script} letters, which the table {table.name} "
                 f"does not know; give its {setting('language')}"
             )
 
@@ -199,75 +171,48 @@ _WAYS = {
 }
 
 
-class Remarks:
-    """Counts what cannot be shown on lines, and what the table cannot write.
-
-    Parameters
-    ----------
-    book
-        Book that the lines are of.
-    """
-
-    def __init__(self, book: Book) -> None:
-        self._book = book
-        self._blocks: set[int] = set()
-        self._unshown: Counter[str] = Counter()
-        self._written: Counter[tuple[Kind, str]] = Counter()
-
-    def see(self, block: Block) -> None:
-        """Count what is in a block, once."""
-        if block.number not in self._blocks:
-            self._blocks.add(block.number)
-            things = [mark.target for mark in block.marks if mark.kind is MarkKind.UNSHOWN]
-            self._unshown.update(thing or "other thing" for thing in things)
-            self._written.update(self._book.otherwise.get(block.number, {}))
-
-    def sentences(self) -> list[str]:
-        """Sentences on all that was seen; none if all is shown as it stands."""
-        table, said = self._book.table, []
-        unknown, plain = self._named(Kind.MARKED, Kind.NAME), self._named(Kind.PLAIN)
-        if unknown and table is not None:
-            said.append(
-                f"the table {table.name} does not know {unknown}, {_WAYS[table.undefined]}; "
-                f"{setting('undefined')} chooses mark, name, code or drop"
-            )
-        if plain and table is not None:
-            said.append(
-                f"the table {table.name} has no sign for {plain}, written as what is nearest"
-            )
-        words = [part for kind, part in self._written if kind is Kind.UNENDING]
-        if words:
-            said.append(
-                f"liblouis does not come to an end with {count(len(words), 'word')} "
-                f"({', '.join(map(repr, words[:3]))}), marked in the text"
-            )
-        if self._unshown:
-            most = _most(self._unshown, 5, count, "{} others")
-            said.append(
-                f"not shown: {count(self._unshown.total(), 'thing')} ({most}); "
-                f"each is marked where it stands"
-            )
-        return said
-
-    def _named(self, *kinds: Kind) -> str:
-        """Number and names of the characters that were written in some ways; empty for none."""
-        found: Counter[str] = Counter()
-        for (kind, part), number in self._written.items():
-            if kind in kinds:
-                found[part] += number
-        if not found:
-            return ""
-        most = _most(found, 3, lambda n, part: f"{n} of {describe(part)}", "{} of others")
-        return f"{count(found.total(), 'character')} ({most})"
+def remarks(book: Book, blocks: Iterable[Block]) -> list[str]:
+    """Sentences on what of some blocks cannot be shown, and on what the table cannot write."""
+    unshown: Counter[str] = Counter()
+    written: dict[Kind, Counter[str]] = {kind: Counter() for kind in Kind}
+    for block in blocks:
+        things = [mark.target for mark in block.marks if mark.kind is MarkKind.UNSHOWN]
+        unshown.update(thing or "other thing" for thing in things)
+        for (kind, part), number in book.otherwise.get(block.number, {}).items():
+            written[kind][part] += number
+    table, said = book.table, []
+    unknown, plain = written[Kind.MARKED] + written[Kind.NAME], written[Kind.PLAIN]
+    if unknown and table is not None:
+        said.append(
+            f"the table {table.name} does not know {_characters(unknown)}, "
+            f"{_WAYS[table.undefined]}; {setting('undefined')} chooses mark, name, code or drop"
+        )
+    if plain and table is not None:
+        said.append(
+            f"the table {table.name} has no sign for {_characters(plain)}, written as what is "
+            f"nearest"
+        )
+    if words := list(written[Kind.UNENDING]):
+        said.append(
+            f"liblouis does not come to an end with {count(len(words), 'word')} "
+            f"({', '.join(map(repr, words[:3]))}), marked in the text"
+        )
+    if unshown:
+        things = [count(number, thing) for thing, number in unshown.most_common()]
+        said.append(
+            f"not shown: {count(unshown.total(), 'thing')} ({', '.join(things)}); "
+            f"each is marked where it stands"
+        )
+    return said
 
 
-def _most(found: Counter[str], most: int, say: Callable[[int, str], str], others: str) -> str:
-    """The most frequent of what was counted, in words, and how many others there are."""
-    named = found.most_common(most)
-    more = found.total() - sum(number for _, number in named)
-    return ", ".join(
-        [*(say(n, what) for what, n in named), *([others.format(more)] if more else [])]
-    )
+def _characters(found: Counter[str]) -> str:
+    """Number of characters, and the names of the most frequent."""
+    most = found.most_common(3)
+    named = [f"{number} of {describe(part)}" for part, number in most]
+    if others := found.total() - sum(number for _, number in most):
+        named.append(f"{others} of others")
+    return f"{count(found.total(), 'character')} ({', '.join(named)})"
 
 
 def describe(part: str) -> str:
@@ -276,9 +221,9 @@ def describe(part: str) -> str:
     return f"U+{ord(part[0]):04X} {name}".strip()
 
 
-def _named(language: str, grade: int | None = None, otherwise: str = "") -> str:
-    """Name of the table of a language and grade, or another if there is none."""
+def _named(language: str, grade: int | None = None) -> str:
+    """Name of the table of a language and grade; empty if there is none."""
     try:
         return find_table(language, grade)
     except InputError:
-        return otherwise
+        return ""

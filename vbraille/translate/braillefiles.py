@@ -9,7 +9,7 @@ from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.errors import InputError
 from vbraille.translate.blocks import Block, BlockKind
 from vbraille.translate.encodings import decode
-from vbraille.translate.liblouis import display_dots
+from vbraille.translate.liblouis import LOUIS
 from vbraille.translate.trees import parse_xml
 from vbraille.wording import count
 
@@ -79,7 +79,10 @@ def _blocks(
 
 def _dialect(table: str) -> dict[int, str]:
     """Cells of each ASCII character by a display table of liblouis; capitals as small letters."""
-    dots = display_dots(table, _ASCII)
+    try:
+        dots = LOUIS.ask("display_dots", table, _ASCII)
+    except RuntimeError:
+        raise InputError(f"liblouis has no display table {table!r}") from None
     found = {}
     for character in _ASCII:
         mask = dots[ord(character.lower()) - 0x20] & 0x3F

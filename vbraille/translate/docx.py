@@ -7,18 +7,16 @@ from typing import TYPE_CHECKING
 
 from vbraille.translate.numbering import BULLET, whole
 from vbraille.translate.office import (
-    FONTS,
-    HIDDEN,
     Document,
     Level,
     Look,
     Numbering,
-    Style,
-    name_by_style,
+    font_of,
+    heading,
     put_picture,
+    role_of,
     symbol,
     tag_of,
-    within,
 )
 from vbraille.translate.trees import Element, names
 
@@ -28,21 +26,8 @@ if TYPE_CHECKING:
     from vbraille.translate.blocks import Block
     from vbraille.translate.source import Source
 
-_FORMS = {
-    "bullet": "bullet",
-    "none": "none",
-    "lowerLetter": "a",
-    "upperLetter": "A",
-    "lowerRoman": "i",
-    "upperRoman": "I",
-    "decimalZero": "01",
-}
-_LOOKS = {"b": "b", "i": "i", "u": "u", "strike": "s", "dstrike": "s", "vanish": HIDDEN}
-_RAISED = {"superscript": "sup", "subscript": "sub"}
-_TEXTS = {"noBreakHyphen": "\u2011", "tab": "\t", "ptab": "\t"}
-_OFF = frozenset(("0", "false", "none", "off"))
 _NAMES = names("docx")
-_SKIPPED, _DRAWN = _NAMES["skipped"], _NAMES["drawn"]
+_OFF = frozenset(("0", "false", "none", "off"))
 _LINK = re.compile(
     r'\s*HYPERLINK\s+(?:"([^"]*)"|([^\s\\]\S*))?(?:.*\\l\s+"?([^"\s]*))?', re.I | re.S
 )
@@ -56,84 +41,70 @@ def read_docx(source: Source) -> Iterator[Block]:
     InputError
         If a part that is needed is missing, damaged or too large.
     """
-    return _Docx(source).read()
+    return _Docx(source).blocks_of(source)
 
 
 class _Docx(Document):
     """Reads one document."""
 
-    def __init__(self, source: Source) -> None:
-        super().__init__(source)
-        self._source = source
+    names = _NAMES
+
+    def blocks_of(self, source: Source) -> Iterator[Block]:
         member = "word/document.xml"
         for relation in self.archive.xml("_rels/.rels", needed=False).iter("Relationship"):
             target = relation.get("Target").lstrip("/")
             if relation.get("Type").endswith("/officeDocument") and self.archive.find(target):
                 member = target
-        self._folder, _, self._name = member.rpartition("/")
-        self._root = self.archive.xml(member)
+        self._folder, _, name = member.rpartition("/")
         styles = self._part("styles.xml")
-        for style in styles.iter("style"):
-            self.styles[style.get("styleId")] = _style_of(style, "basedOn")
+        self.styles = {each.get("styleId"): _look_of(each) for each in styles.iter("style")}
         self.usual = tag_of(_value(styles, "docDefaults/rPrDefault/rPr/lang"))
-        self._lists = _lists_of(self._part("numbering.xml"))
+        self.lists = _lists_of(self._part("numbering.xml"))
         self._fields: list[str] = []  # instructions of the fields around the run
         self._link: Element | None = None  # that of a field of the paragraph
         self._begun: Element | None = None  # a paragraph that is one with the next
-
-    def read(self) -> Iterator[Block]:
-        self._links = self._links_of(self._name)
-        self._inner(self._root, self.body, {})
+        self._read_links(name)
+        self.inner(self.archive.xml(member), self.body, {})
         for key, item in self.note_items():
             kind, _, number = key.partition("-")
-            self._links = self._links_of(f"{kind}s.xml")
+            self._read_links(f"{kind}s.xml")
             for note in self._part(f"{kind}s.xml").iter(kind):
                 if note.get("id") == number:
-                    self._inner(note, item, {})
-        return self.blocks(self._source, self.archive.xml("docProps/core.xml", needed=False))
+                    self.inner(note, item, {})
+        return self.blocks(source, self.archive.xml("docProps/core.xml", needed=False))
 
     def _part(self, name: str) -> Element:
         return self.archive.xml(f"{self._folder}/{name}", needed=False)
 
-    def _links_of(self, name: str) -> dict[str, str]:
-        """Addresses in a part of the document, by their keys there."""
+    def _read_links(self, name: str) -> None:
+        """Read the addresses of a part of the document by their keys."""
         found = self._part(f"_rels/{name}.rels").iter("Relationship")
-        return {relation.get("Id"): relation.get("Target") for relation in found}
+        self._links = {relation.get("Id"): relation.get("Target") for relation in found}
 
-    def _inner(self, holder: Element, into: Element, look: Look) -> None:
-        """Read what is in an element, whatever holds it there."""
-        for element in holder.elements:
-            if element.name not in _SKIPPED:
-                self._piece(element, into, look)
-
-    def _piece(self, element: Element, into: Element, look: Look) -> None:
+    def read_own(self, element: Element, into: Element, look: Look) -> None:
         """Read a block, what stands in a paragraph, or what stands in a run."""
         match element.name:
             case "p":
                 self._paragraph(element, into)
             case "tbl":
-                into.children.append(self._table(element))
+                self._table(element, into.add("table"))
             case "r":
-                look = look | self.look_of(_value(element, "rPr/rStyle")) | _look_of(element)
+                look = look | self.look_of(_look_of(element))
                 for child in element.elements:
-                    if not look.get(HIDDEN) or child.name in ("fldChar", "instrText"):
-                        self._piece(child, self._link or into, look)
+                    if not look.get("hidden") or child.name in ("fldChar", "instrText"):
+                        self.read(child, self._link or into, look)
             case "hyperlink":
                 anchor = element.get("anchor")
                 address = self._links.get(element.get("id"), "") + (f"#{anchor}" if anchor else "")
-                self._inner(element, into.add("a", href=address), look)
+                self.inner(element, into.add("a", href=address), look)
             case "fldSimple":
-                self._inner(element, into.add("a", href=_target(element.get("instr"))), look)
+                self.inner(element, into.add("a", href=_target(element.get("instr"))), look)
             case "fldChar":
                 self._field(element, into)
             case "instrText" if self._fields:
                 self._fields[-1] += element.text
-            case "bookmarkStart" if element.get("name") not in ("", "_GoBack"):
-                into.add("a", id=element.get("name"))
             case "oMath" | "oMathPara":
                 into.add("math").children.append(element)
-            case "t" | "noBreakHyphen" | "tab" | "ptab":
-                self.say(into, _TEXTS.get(element.name, element.text), look)
             case "sym":
                 sign = symbol(_hexadecimal(element.get("char")), element.get("font"))
                 self.say(into, sign, look)
@@ -141,39 +112,31 @@ class _Docx(Document):
                     put_picture(into, [], "symbol")
             case "footnoteReference" | "endnoteReference" as name:
                 self.refer(into, f"{name.removesuffix('Reference')}-{element.get('id')}")
-            case "br" | "cr":
-                if element.get("type") != "page":
-                    into.add("br")
-            case "ruby":
-                ruby = into.add("ruby", _find(element, "rubyBase").text)
-                ruby.add("rt", _find(element, "rt").text)
             case "AlternateContent":
                 # What this program knows, or else what is there for older ones.
-                drawn = [e for e in _find(element, "Choice").elements if e.name in _DRAWN]
+                drawn = [e for e in _find(element, "Choice").elements if e.name in _NAMES["drawn"]]
                 for inner in drawn or element.iter("t", "sym"):
-                    self._piece(inner, into, look)
-            case name if name in _DRAWN:
+                    self.read(inner, into, look)
+            case name if name in _NAMES["drawn"]:
                 self._drawing(element, into)
             case _:
-                self._inner(element, into, look)
+                self.inner(element, into, look)
 
     def _paragraph(self, element: Element, into: Element) -> None:
         """Read a paragraph, which may be a heading or an item of a list."""
-        own = _style_of(element, "pPr/pStyle")
-        styles = [own, *self.chain(own.based)]
+        look = self.usual | self.look_of(_look_of(element))
         block, self._begun = self._begun or Element("p"), None
         outer, self._link = self._link, None
-        self._inner(element, block, self.usual | self.look_of(own.based))
+        self.inner(element, block, look)
         self._link = outer
         # One whose own mark is deleted, and a drop cap, is one with the next.
         drop_cap = _find(element, "pPr/framePr").get("dropCap", "none") != "none"
         if drop_cap or _find(element, "pPr/rPr/del").name:
             self._begun = block
             return
-        name_by_style(block, styles)
-        key = next((style.listed for style in styles if style.listed is not None), "0")
-        at = next((style.at for style in styles if style.at is not None), 0)
-        numbering = self._lists.get(key)
+        block.name = look.get("role") or "p"
+        key, at = look.get("numId", "0"), whole(look.get("ilvl"), 0)
+        numbering = self.lists.get(key)
         if numbering is not None and at in numbering.levels and block.text:
             marker = numbering.marker(at)
             if block.name.startswith("h"):
@@ -189,31 +152,29 @@ class _Docx(Document):
         if block.children:
             into.children.append(block)
 
-    def _table(self, element: Element) -> Element:
+    def _table(self, element: Element, table: Element) -> None:
         """Read a table; a cell that goes on from the one above widens that."""
-        table = Element("table")
-        rows = list(within(element, ("tr",), _SKIPPED))
         look = _find(element, "tblPr/tblLook")
-        first = look.get("firstRow", str(_hexadecimal(look.get("val")) >> 5 & 1))
+        usual = look.get("firstRow", str(_hexadecimal(look.get("val")) >> 5 & 1))
+        rows = list(self.within(element, "tr"))
         above: dict[int, Element] = {}
-        for number, row in enumerate(rows):
-            usual = "0" if number or len(rows) == 1 else first
+        for row in rows:
+            usual = usual if row is rows[0] is not rows[-1] else "0"
             is_head = _value(row, "trPr/tblHeader", usual) not in _OFF
             line = (table.add("thead") if is_head else table).add("tr")
             column = max(whole(_value(row, "trPr/gridBefore"), 0), 0)
             if column:
                 line.add("td", colspan=str(column))
-            for cell in within(row, ("tc",), _SKIPPED):
+            for cell in self.within(row, "tc"):
                 columns = max(whole(_value(cell, "tcPr/gridSpan")), 1)
                 goes_on = _value(cell, "tcPr/vMerge", "restart") != "restart"
                 if goes_on and column in above:
                     rowspan = whole(above[column].get("rowspan")) + 1
                     above[column].attributes["rowspan"] = str(rowspan)
                 else:
-                    above[column] = line.add("th" if is_head else "td", colspan=str(columns))
-                    self._inner(cell, above[column], {})
+                    above[column] = line.add("td", colspan=str(columns))
+                    self.inner(cell, above[column], {})
                 column += columns
-        return table
 
     def _field(self, mark: Element, into: Element) -> None:
         """Begin a field, its text, or its end."""
@@ -232,16 +193,12 @@ class _Docx(Document):
     def _drawing(self, element: Element, into: Element) -> None:
         """Read a picture by its text, a box by what is in it; mark all else."""
         for box in element.iter("txbxContent"):
-            self._inner(box, into.add("div"), {})
+            self.inner(box, into.add("div"), {})
             return
-        kinds = " ".join(data.get("uri") for data in element.iter("graphicData"))
-        what = "drawing"
-        if element.name == "object":
-            what = "embedded object"
-        elif "/chart" in kinds or "/diagram" in kinds:
-            what = "chart" if "/chart" in kinds else "diagram"
-        elif any(element.iter("pic", "imagedata")):
-            what = "picture"
+        kinds = {each.get("uri").rpartition("/")[2] for each in element.iter("graphicData")}
+        what = "picture" if any(element.iter("pic", "imagedata")) else "drawing"
+        what = "embedded object" if element.name == "object" else what
+        what = next(iter(kinds & {"chart", "diagram"}), what)
         described = [each.get("descr") for each in element.iter("docPr")]
         put_picture(into, described + [each.get("alt") for each in element.iter("shape")], what)
 
@@ -267,41 +224,38 @@ def _levels(holder: Element, following: int = 0) -> dict[int, Level]:
         if level.name == "lvl":
             at = whole(level.get("ilvl"), following)
             following = at + 1
-            form = _FORMS.get(_value(level, "numFmt"), "1")
+            form = _NAMES["forms"].get(_value(level, "numFmt"), "1")
             legal = _value(level, "isLgl", "0") not in _OFF
             levels[at] = Level(form, _value(level, "lvlText"), whole(_value(level, "start")), legal)
     return levels
 
 
-def _style_of(holder: Element, based: str) -> Style:
-    """Style of an element, or of a paragraph; the key of what it is based on stands at a path."""
-    outline, at = _value(holder, "pPr/outlineLvl"), _value(holder, "pPr/numPr/ilvl")
-    return Style(
-        _value(holder, "name").lower(),
-        _value(holder, based),
-        _look_of(holder),
-        (whole(outline, 9) + 1) % 10 if outline else None,
-        _value(holder, "pPr/numPr/numId") or None,
-        whole(at, 0) if at else None,
-    )
-
-
 def _look_of(holder: Element) -> Look:
-    """Look that a style or a run says that it has."""
+    """Look that a style, a paragraph or a run says that it has."""
     look: Look = {}
-    for element in _find(holder, "rPr").elements:
+    properties = [_find(holder, path) for path in ("pPr", "pPr/numPr", "rPr")]
+    for element in (each for part in (holder, *properties) for each in part.elements):
         value = element.get("val")
-        if element.name in _LOOKS:
-            tag = _LOOKS[element.name]
-            is_off = value in _OFF or (tag == "u" and not value)
-            look[tag] = "" if is_off else tag
-        elif element.name == "vertAlign":
-            look |= {tag: tag if name == value else "" for name, tag in _RAISED.items()}
-        elif element.name == "lang":
-            look |= tag_of(value)
-        elif element.name == "rFonts":
-            font = element.get("ascii").lower().split(" ")[0]
-            look |= {"font": font} if font in FONTS else {}
+        match element.name:
+            case "name":
+                look |= role_of(value)
+            case "basedOn" | "pStyle" | "rStyle":
+                look["based"] = value
+            case "numId" | "ilvl" if value:
+                look[element.name] = value
+            case "outlineLvl" if value != "9" or look.get("role", "h").startswith("h"):
+                look |= heading((whole(value, 9) + 1) % 10)
+            case "vertAlign":
+                look |= {
+                    tag: tag if name == value else "" for name, tag in _NAMES["raised"].items()
+                }
+            case "lang":
+                look |= tag_of(value)
+            case "rFonts":
+                look |= font_of(element.get("ascii"))
+            case name if name in _NAMES["emphases"]:
+                is_off = value in _OFF or (name == "u" and not value)
+                look[_NAMES["emphases"][name]] = "" if is_off else name
     return look
 
 

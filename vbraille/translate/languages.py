@@ -13,16 +13,12 @@ from functools import cache
 from pathlib import Path
 
 from vbraille.errors import InputError
-from vbraille.translate import liblouis
+from vbraille.translate.liblouis import LOUIS
 from vbraille.wording import nearest, setting
 
 _DATA = tomllib.loads(Path(__file__).with_name("languages.toml").read_text("utf-8"))
-_USUAL, _SAME = _DATA["usual"], _DATA["same"]
-# Languages whose books of general interest are contracted.
-_CONTRACTED = frozenset(("da", "de", "en", "ko"))
 # Tables of a standard that is no longer in force, or with signs that books leave out.
 _DATED = re.compile(r"_\d{4}\b|-\d{4}[-.]|-detailed\b")
-_SIX_DOTS = ("dra.tbl", "mn-MN-g1.utb", "mn-MN-g2.ctb")  # whatever their metadata say
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -52,22 +48,14 @@ class TableInfo:
     dots: int = 0
     kind: str = ""
 
-    def speaks(self, language: str) -> bool:
-        """Tell whether the table is for a language, given by a tag in lower case with hyphens."""
-        tag = self.language.lower()
-        return tag == language or tag.startswith(f"{language}-")
-
 
 @cache
 def list_tables() -> tuple[TableInfo, ...]:
     """All tables that have metadata, by name."""
     found = []
-    for said in liblouis.list_tables():
-        dots = 6 if said["name"] in _SIX_DOTS else int(said["dots"] or 0)
-        title = said["display-name"] or said["index-name"]
-        found.append(
-            TableInfo(said["name"], title, said["language"], said["grade"], dots, said["type"])
-        )
+    for name, title, index, language, grade, dots, kind in LOUIS.ask("list_tables"):
+        number = 6 if name in _DATA["six_dots"] else int(dots or 0)
+        found.append(TableInfo(name, title or index, language, grade, number, kind))
     return tuple(sorted(found))
 
 
@@ -85,19 +73,20 @@ def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
     InputError
         If there are no tables; the message names the nearest languages.
     """
-    wanted = language.strip().lower().replace("_", "-")
+    tag = wanted = language.strip().lower().replace("_", "-")
     if not wanted:
         raise InputError(
             f"the language is empty; give a tag such as fr, or leave {setting('language')} out"
         )
-    tag = wanted
     while tag:
-        tag = _SAME.get(tag, tag)
-        found = tuple(table for table in list_tables() if table.speaks(tag))
-        if found or tag in _USUAL:
+        tag = _DATA["same"].get(tag, tag)
+        found = tuple(
+            table for table in list_tables() if f"{table.language}-".lower().startswith(f"{tag}-")
+        )
+        if found or tag in _DATA["usual"]:
             return tag, found
         tag = tag.rpartition("-")[0]
-    tags = sorted({table.language for table in list_tables() if table.language})
+    tags = sorted({table.language for table in list_tables()} - {""})
     raise InputError(
         f"no braille table for language {language!r}{nearest(wanted, tags, 3)} "
         f"(vbraille tables lists all)"
@@ -130,27 +119,24 @@ def find_table(language: str = "en", grade: int | None = None) -> str:
         If there is no such table; the message says which grades there are.
     """
     tag, tables = tables_of(language)
-    uncontracted, contracted = _USUAL.get(tag, ("", ""))
-    if grade is None:
-        usual = contracted if tag in _CONTRACTED else uncontracted
-        return usual or min(tables, key=preference).name
-    if (grade, bool(uncontracted)) == (1, True) or (grade, bool(contracted)) == (2, True):
-        return (uncontracted, contracted)[grade - 1]
+    named = _DATA["usual"].get(tag, {})
+    wanted = "usual" if grade is None else str(grade)
     plain = [table for table in tables if not _is_contracted(table)]
-    fitting = [t for t in tables if t.grade == str(grade) and t.kind != "computer"]
-    if not fitting and grade < 2:
-        if uncontracted:
-            return uncontracted
-        fitting = plain
-    if not fitting:
-        there = {table.grade for table in tables if table.grade.isdecimal()}
-        there |= {"1"} if plain or uncontracted else set()
-        there |= {"2"} if contracted else set()
-        raise InputError(
-            f"there is no grade {grade} for language {language!r}; there is "
-            f"{', '.join(sorted(there))} (vbraille tables {setting('language')} {language})"
-        )
-    return min(fitting, key=preference).name
+    fitting = [table for table in tables if table.grade == wanted and table.kind != "computer"]
+    if grade is None:
+        fitting = list(tables)
+    elif not fitting and grade < 2:
+        wanted, fitting = "1", plain
+    if wanted in named:
+        return named[wanted]
+    if fitting:
+        return min(fitting, key=preference).name
+    there = {*named, *(table.grade for table in tables), *["1"][: len(plain)]}
+    raise InputError(
+        f"there is no grade {grade} for language {language!r}; there is "
+        f"{', '.join(sorted(filter(str.isdecimal, there)))} "
+        f"(vbraille tables {setting('language')} {language})"
+    )
 
 
 def _is_contracted(table: TableInfo) -> bool:

@@ -10,34 +10,35 @@ import ctypes
 import pickle
 import signal
 import sys
+from contextlib import suppress
 from functools import cache
 from itertools import takewhile
 from pathlib import Path
-from typing import Any
 
 # liblouis's own binding comes with the system; PyPI has another package of that name.
 sys.path.insert(0, "/usr/lib/python3/dist-packages")
 import louis
 
 COMPILING_S = 20.0  # the largest tables take a second or two
-KEYS = ("language", "grade", "type", "dots", "display-name", "index-name")
+UNDEFINED = 0xFF00  # the cell of `undefined.utb`
+KEYS = (b"display-name", b"index-name", b"language", b"grade", b"dots", b"type")
 
 LIBRARY = louis.liblouis
 LIBRARY.lou_getTableInfo.restype = ctypes.c_char_p
 LIBRARY.lou_listTables.restype = ctypes.POINTER(ctypes.c_char_p)
-LIBRARY.lou_version.restype = ctypes.c_char_p
 LIBRARY.lou_getTypeformForEmphClass.restype = ctypes.c_ushort
 LIBRARY.lou_setLogLevel(60_000)
 
 
 def translate(
     table: str, more: str, text: str, forms: list[int] | None
-) -> tuple[list[int], list[int]]:
-    """Dots of a text, and for each cell the character that it stands for."""
+) -> tuple[bytes, list[int], list[int]]:
+    """Dots of a text, for each cell the character that it stands for, and undefined cells."""
     compile_table(f"{table},{more}")
     limit_processor_time(0.5 + len(text) / 10_000)
     dots, places, _, _ = louis.translate([table, more], text, forms, mode=louis.dotsIO)
-    return [*map(ord, dots)], places
+    undefined = [cell for cell, code in enumerate(dots) if ord(code) == UNDEFINED]
+    return bytes(ord(code) & 0xFF for code in dots), places, undefined
 
 
 @cache
@@ -47,20 +48,21 @@ def compile_table(tables: str) -> None:
     louis.checkTable([tables])
 
 
-def list_tables() -> list[dict[str, str]]:
-    """File name and metadata of each table that has some."""
+def list_tables() -> list[list[str]]:
+    """File name of each table that has metadata, and what it says under each of the keys."""
     found = []
     for path in takewhile(lambda path: path is not None, LIBRARY.lou_listTables()):
-        told = {key: LIBRARY.lou_getTableInfo(path, key.encode()) or b"" for key in KEYS}
-        said = {key: value.decode("utf-8", "replace") for key, value in told.items()}
-        found.append({"name": Path(path.decode()).name, **said})
+        told = [LIBRARY.lou_getTableInfo(path, key) or b"" for key in KEYS]
+        found.append(
+            [Path(path.decode()).name, *(said.decode("utf-8", "replace") for said in told)]
+        )
     return found
 
 
-def emphasis_bit(table: str, name: str) -> int:
-    """Bit that a table has for a class of emphasis; 0 if it has no such class."""
+def emphasis_bits(table: str, names: list[str]) -> list[int]:
+    """Bits that a table has for classes of emphasis; 0 for a class that it does not have."""
     compile_table(table)
-    return LIBRARY.lou_getTypeformForEmphClass(table.encode(), name.encode())
+    return [LIBRARY.lou_getTypeformForEmphClass(table.encode(), name.encode()) for name in names]
 
 
 def display_dots(table: str, characters: str) -> list[int]:
@@ -68,38 +70,25 @@ def display_dots(table: str, characters: str) -> list[int]:
     return [ord(dots) & 0xFF for dots in louis.charToDots([table], characters)]
 
 
-def version() -> str:
-    """Version of liblouis."""
-    return LIBRARY.lou_version().decode()
-
-
 def limit_processor_time(seconds: float) -> None:
     """Have the system end this process when it has worked for that long."""
     signal.setitimer(signal.ITIMER_PROF, seconds)
 
 
-def answer(question: tuple[Any, ...]) -> Any:
-    """Answer one question: the name of a function, and what it is given."""
-    name, *given = question
-    try:
-        return globals()[name](*given)
-    except (RuntimeError, ValueError) as error:
-        return RuntimeError(str(error))
-    finally:
-        limit_processor_time(0)
-
-
 def serve() -> None:
-    """Answer questions until there are no more."""
+    """Answer questions, each the name of a function and what it is given, until there are none."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the program that asks decides when to end
     while True:
+        name, *given = pickle.load(sys.stdin.buffer)
         try:
-            question = pickle.load(sys.stdin.buffer)
-        except EOFError:
-            return
-        sys.stdout.buffer.write(pickle.dumps(answer(question)))
+            answer = globals()[name](*given)
+        except (RuntimeError, ValueError) as error:
+            answer = RuntimeError(str(error))
+        limit_processor_time(0)
+        pickle.dump(answer, sys.stdout.buffer)
         sys.stdout.buffer.flush()
 
 
 if __name__ == "__main__":
-    serve()
+    with suppress(EOFError):
+        serve()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from vbraille.translate.archive import Archive
 from vbraille.translate.html import tree_blocks
@@ -13,23 +13,27 @@ from vbraille.translate.numbering import BULLET, numeral
 from vbraille.translate.trees import Element
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Iterator
 
     from vbraille.translate.blocks import Block
     from vbraille.translate.source import Source
 
-# What is known of a text: its "lang", its "font" if that is one of signs, and for names of HTML's
-# elements whether it looks so: the name itself, or nothing where it does not.
+# What a style, a paragraph or a run says of its text: "lang"; "font" if that is one of signs;
+# "hidden" and the names of emphases, with nothing where it does not look so; the "role" of
+# paragraphs, as the name of an element of HTML; the list that they are items of; and the name of
+# the style that all this is "based" on.
 Look = dict[str, str]
-HIDDEN = "hidden"  # among the elements of a look: text that is not shown
 
+_EMPHASES = ("b", "i", "s", "sub", "sup", "u")
 _NO_LANGUAGE = frozenset(("", "none", "zxx", "und", "x-none", "mul"))
-_HEADING = re.compile("heading ([1-9])|title|titel|titre")
-_QUOTE = re.compile("(?:intense |block )?quote|block text|quotations")
-_CODE = re.compile("source code|html preformatted|preformatted text|plain text|code")
+_ROLES = re.compile(
+    "heading (?P<h>[1-9])|(?P<h1>title|titel|titre)"
+    "|(?P<blockquote>(?:intense |block )?quote|block text|quotations)"
+    "|(?P<pre>source code|html preformatted|preformatted text|plain text|code)"
+    "|(?P<th>table heading.*)"
+)
 _LONGEST_CHAIN = 20  # styles that are based on each other
 _BOXES = frozenset("☐☑☒")  # bullets of lists of what is done
-_PLACE = re.compile("%([1-9])")
 _PRIVATE = re.compile("[\uf000-\uf0ff]")  # where fonts of signs have theirs
 # Characters of the font Symbol from 0x20 on, and from 0xA0 on; some of Wingdings.
 _SYMBOL = (
@@ -38,7 +42,7 @@ _SYMBOL = (
     "€ϒ′≤⁄∞ƒ♣♦♥♠↔←↑→↓°±″≥×∝∂•÷≠≡≈…⏐⎯↵ℵℑℜ℘⊗⊕∅∩∪⊃⊇⊄⊂⊆∈∉∠∇®©™∏√⋅¬∧∨⇔⇐⇑⇒⇓◊〈®©™∑⎛⎜⎝⎡⎢⎣⎧⎨⎩⎪€〉∫",
 )
 _WINGDINGS = b"oq\xa8\xfe\xfd\xfc\xfbJLln\x9f\xa7\xdf\xe0\xe8(*\xd8", "☐☐☐☑☒✔✘☺☹●■•▪←→→☎✉➢"
-FONTS = {
+_FONTS = {
     "symbol": dict(enumerate(_SYMBOL[0], 0x20)) | dict(enumerate(_SYMBOL[1], 0xA0)),
     "wingdings": dict(zip(*_WINGDINGS, strict=True)),
 }
@@ -46,57 +50,45 @@ FONTS = {
 
 def signs(text: str, font: str) -> str:
     """Text with the characters of a font of signs that stand in private places."""
-    known = FONTS.get(font.lower().split(" ")[0], {})
+    known = _FONTS.get(font, {})
     return _PRIVATE.sub(lambda found: known.get(ord(found[0]) & 0xFF, found[0]), text)
 
 
 def symbol(code: int, font: str) -> str:
     """Character of a code of a font; empty if it is not known here."""
-    sign = signs(chr(code if code > 0xFF else code | 0xF000), font)
+    sign = signs(chr(code if code > 0xFF else code | 0xF000), font_of(font).get("font", ""))
     sign = chr(code) if _PRIVATE.match(sign) else sign
     return "" if _PRIVATE.match(sign) or not sign.isprintable() else sign
 
 
-@dataclass(frozen=True, slots=True)
-class Style:
-    """A style of paragraphs or of characters, or what a paragraph says of itself.
-
-    Parameters
-    ----------
-    name
-        Name that people know, in lower case.
-    based
-        Key of the style that it is based on.
-    look
-        What it says of its text, without the styles below it.
-    level
-        Level as a heading, 0 for none; None if nothing is said of it.
-    listed, at
-        Key of the list that its paragraphs are items of, and the level in that, from 0; None if
-        nothing is said of them.
-    """
-
-    name: str = ""
-    based: str = ""
-    look: Look = field(default_factory=dict)
-    level: int | None = None
-    listed: str | None = None
-    at: int | None = None
+def font_of(name: str) -> Look:
+    """Look of text in a font of signs; nothing for other fonts."""
+    font = name.lower().split(" ")[0]
+    return {"font": font} if font in _FONTS else {}
 
 
-def heading_level(styles: list[Style]) -> int:
-    """Level of a heading by the styles of a paragraph, its own first; 0 if it is none."""
-    for style in styles:
-        if style.level is not None:
-            return style.level
-        found = _HEADING.fullmatch(style.name)
-        if found is not None:
-            return int(found[1] or 1)
-    return 0
+def role_of(name: str) -> Look:
+    """Role of the paragraphs of a style by the name that people know; nothing for other names."""
+    found = _ROLES.fullmatch(name.lower())
+    if found is None or found.lastgroup is None:
+        return {}
+    return heading(int(found["h"])) if found["h"] else {"role": found.lastgroup}
 
 
-@dataclass(frozen=True, slots=True)
-class Level:
+def heading(level: int) -> Look:
+    """Role of a heading of a level; that of plain paragraphs for 0."""
+    return {"role": f"h{min(level, 6)}" if level else ""}
+
+
+def tag_of(language: str, country: str = "") -> Look:
+    """Look of text in a language as a word processor has it; nothing if that is none."""
+    language, country = language.strip(), country.strip()
+    if language.lower() in _NO_LANGUAGE:
+        return {}
+    return {"lang": f"{language}-{country}" if country.lower() not in _NO_LANGUAGE else language}
+
+
+class Level(NamedTuple):
     """A level of a list.
 
     Parameters
@@ -131,7 +123,7 @@ class Numbering:
         Numbers with which levels begin anew when they are first come to.
     """
 
-    levels: dict[int, Level]
+    levels: dict[int, Level] = field(default_factory=dict)
     counts: dict[int, int] = field(default_factory=dict)
     starts: dict[int, int] = field(default_factory=dict)
 
@@ -150,15 +142,12 @@ class Numbering:
             return f"{level.text} " if level.text in _BOXES else BULLET
         if level.form in ("bullet", "none"):
             return ""
-
-        def numbered(found: re.Match[str]) -> str:
-            place = int(found[1]) - 1
+        label = level.text
+        for place in range(9):
             one = self.levels.get(place, level)
-            form = "1" if level.legal else one.form
-            return numeral(self.counts.get(place, one.start), form)
-
-        label = _PLACE.sub(numbered, level.text).strip()
-        return f"{label} " if label else ""
+            shown = numeral(self.counts.get(place, one.start), "1" if level.legal else one.form)
+            label = label.replace(f"%{place + 1}", shown)
+        return f"{label.strip()} " if label.strip() else ""
 
 
 class Document:
@@ -166,48 +155,75 @@ class Document:
 
     Attributes
     ----------
+    names : dict
+        Names of its format's elements, as `names` has them.
     archive : Archive
         Parts of its file.
     body : Element
         Element for the text.
     styles : dict
-        Styles by their keys.
+        Looks of styles by their keys.
+    lists : dict
+        Lists by their keys.
     usual : dict
         Look of all text.
     """
 
+    names: dict[str, Any]
+
     def __init__(self, source: Source) -> None:
         self.archive = Archive(source.stream, source.name)
         self.body = Element("body")
-        self.styles: dict[str, Style] = {}
+        self.styles: dict[str, Look] = {}
+        self.lists: dict[str, Numbering] = {}
         self.usual: Look = {}
         self._notes: dict[str, str] = {}  # numbers by keys
         self._spoken: Counter[str] = Counter()  # characters of each language
 
-    def chain(self, key: str) -> list[Style]:
-        """A style and those that it is based on; nothing for one that is not there."""
-        found: list[Style] = []
-        while key in self.styles and len(found) < _LONGEST_CHAIN:
-            found.append(self.styles[key])
-            key = found[-1].based
-        return found
+    def inner(self, holder: Element, into: Element, look: Look) -> None:
+        """Read the text of an element and what stands in it."""
+        for child in holder.children:
+            if not isinstance(child, str):
+                self.read(child, into, look)
+            elif holder.name in self.names["speaking"] or not self.names["speaking"]:
+                self.say(into, child, look)
 
-    def look_of(self, key: str) -> Look:
-        """Look of a style, with those of the styles that it is based on."""
-        look: Look = {}
-        for style in reversed(self.chain(key)):
-            look |= style.look
-        return look
+    def read(self, element: Element, into: Element, look: Look) -> None:
+        """Read an element that is one of HTML by another name, or one of the format's own."""
+        name, _, attribute = self.names["html"].get(element.name, "").partition(" ")
+        if name:
+            attributes = {"id": element.get(attribute)} if attribute else {}
+            self.inner(element, into.add(name, **attributes), look)
+        elif element.name in self.names["texts"]:
+            self.say(into, self.names["texts"][element.name], look)
+        elif element.name not in self.names["skipped"]:
+            self.read_own(element, into, look)
+
+    def read_own(self, element: Element, into: Element, look: Look) -> None:
+        """Read an element of the format's own, all of whose kinds are known here."""
+        raise NotImplementedError
+
+    def within(self, holder: Element, name: str) -> Iterator[Element]:
+        """Elements of a name in another, whatever holds them there that is not skipped."""
+        for element in holder.elements:
+            if element.name == name:
+                yield element
+            elif element.name not in self.names["skipped"]:
+                yield from self.within(element, name)
+
+    def look_of(self, own: Look, most: int = _LONGEST_CHAIN) -> Look:
+        """A look, with all that the styles say that it is based on."""
+        style = self.styles.get(own.get("based", ""))
+        return own if style is None or not most else self.look_of(style, most - 1) | own
 
     def say(self, into: Element, text: str, look: Look) -> None:
         """Put text of a look at the end of an element; what ends right before goes on."""
-        if not text or look.get(HIDDEN):
+        if not text or look.get("hidden"):
             return
         language = look.get("lang", "")
         self._spoken[language] += len(text)
-        tags = sorted(value for name, value in look.items() if name not in ("lang", "font"))
-        named = [("span", {"lang": language})] if language else []
-        for name, attributes in [*named, *((tag, {}) for tag in tags if tag)]:
+        around = [(name, {}) for name in _EMPHASES if look.get(name)]
+        for name, attributes in [("span", {"lang": language})] * bool(language) + around:
             last = into.children[-1] if into.children else ""
             if isinstance(last, Element) and (last.name, last.attributes) == (name, attributes):
                 into = last
@@ -231,46 +247,16 @@ class Document:
     def blocks(self, source: Source, about: Element) -> Iterator[Block]:
         """Blocks of the document, whose language is that of most of its text."""
         source.title = about.said("title")
-        most = self._spoken.most_common(1)
+        most = [language for language, _ in self._spoken.most_common(1)]
         usual = self.usual.get("lang") or about.said("language")
-        source.language = (most[0][0] if most else "") or usual
+        source.language = "".join(most) or usual
         return tree_blocks(source, self.body)
-
-
-def name_by_style(paragraph: Element, styles: list[Style], level: int = 0) -> None:
-    """Make a paragraph a heading, a quotation or code, as its level or its styles say."""
-    level = level or heading_level(styles)
-    if level:
-        paragraph.name = f"h{min(level, 6)}"
-    elif any(_QUOTE.fullmatch(style.name) for style in styles):
-        paragraph.name = "blockquote"
-    elif any(_CODE.fullmatch(style.name) for style in styles):
-        paragraph.name = "pre"
-
-
-def within(holder: Element, names: Collection[str], skipped: Collection[str]) -> Iterator[Element]:
-    """Elements of some names in another, whatever holds them there that is not skipped."""
-    for element in holder.elements:
-        if element.name in names:
-            yield element
-        elif element.name not in skipped:
-            yield from within(element, names, skipped)
 
 
 def put_picture(into: Element, described: list[str], what: str = "picture") -> None:
     """Put the first text that describes a picture; without one, say what cannot be shown here."""
     told = next((text.strip() for text in described if text.strip()), "")
-    if told:
-        into.add("img", alt=told)
-    elif what == "picture":
-        into.add("img")
+    if told or what == "picture":
+        into.add("img", title=told)
     else:
-        into.add("canvas", aria_label="" if what == "drawing" else what)
-
-
-def tag_of(language: str, country: str = "") -> Look:
-    """Look of text in a language as a word processor has it; nothing if that is none."""
-    language, country = language.strip(), country.strip()
-    if language.lower() in _NO_LANGUAGE:
-        return {}
-    return {"lang": f"{language}-{country}" if country.lower() not in _NO_LANGUAGE else language}
+        into.add("canvas", aria_label=what.removeprefix("drawing"))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import hashlib
 import re
 from bisect import bisect_right
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, BinaryIO
+from functools import cached_property
+from math import inf
+from typing import TYPE_CHECKING, BinaryIO, NamedTuple
 from weakref import finalize
 
 from vbraille.errors import InputError
@@ -22,11 +23,9 @@ PIECE = 8_192  # characters of a block; a longer one comes in pieces
 _PIECE = re.compile(
     rf"(?s).{{{PIECE // 2},{PIECE}}}(?<=[.!?…] )|.{{1,{PIECE}}}(?<= )|.{{1,{PIECE}}}"
 )
-_LOUDEST = 100_000  # blocks that are gathered in one go
 
 
-@dataclass(frozen=True, slots=True)
-class Heading:
+class Heading(NamedTuple):
     """A heading, or an entry of the book's own table of contents.
 
     Parameters
@@ -84,22 +83,19 @@ class Source:
     def __init__(self, name: str, form: str, stream: BinaryIO, reader: Reader) -> None:
         self.name, self.form, self.stream = name, form, stream
         self.title = self.language = ""
-        self.in_cells = False
+        self.in_cells = self.complete = False
         self.expected = 0
-        self.complete = False
         self.members: Callable[[str], bytes] | None = None  # files within the book
         self._blocks: list[Block] = []
         self._anchors: dict[str, int] = {}
-        self._end = 0
-        self._text = ""
-        self._notes: list[str] = []
+        self._notes: dict[str, bool] = {}  # whether they are new
         finalize(self, stream.close)
         self._reading = reader(self)
         self.gather(1)
         if not self._blocks:
             raise InputError(f"{name} has no text in it; give another file")
 
-    def gather(self, blocks: int) -> bool:
+    def gather(self, blocks: float) -> bool:
         """Read some more blocks; tell whether all are read."""
         while blocks > 0 and not self.complete:
             blocks -= 1
@@ -107,36 +103,39 @@ class Source:
             if block is None:
                 self.complete = True
             else:
-                for piece in _pieces(block):
-                    self._add(piece)
+                self._add(block)
         return self.complete
 
     def _add(self, block: Block) -> None:
-        start = self._end + 1 if self._blocks else 0
-        block = block.replace(number=len(self._blocks), start=start)
+        """Add a block, in pieces if it is long; each goes on where the one before broke off."""
         for name in block.anchors:
-            self._anchors.setdefault(name, start)
-        self._blocks.append(block)
-        self._end = block.end
-
-    @property
-    def text(self) -> str:
-        """All of the text; what is not read yet is read now."""
-        while not self.gather(_LOUDEST):
-            pass
-        if not self._text:
-            self._text = "\n".join(block.text for block in self._blocks)
-        return self._text
+            self._anchors.setdefault(name, self.end + 1)
+        for start, stop in _pieces(block.text):
+            piece = block
+            if stop - start < len(block.text):
+                piece = block.replace(
+                    text=block.text[start:stop],
+                    marks=cut_marks(block.marks, start, stop),
+                    cells=None if block.cells is None else block.cells[start:stop],
+                )
+            if start:
+                piece = piece.replace(continues=True, anchors=(), entry=None)
+            self._blocks.append(piece.replace(number=len(self._blocks), start=self.end + 1))
 
     @property
     def end(self) -> int:
         """Place one past the last character that has been read."""
-        return self._end
+        return self._blocks[-1].end if self._blocks else -1
+
+    @cached_property
+    def text(self) -> str:
+        """All of the text; what is not read yet is read now."""
+        self.gather(inf)
+        return "\n".join(block.text for block in self._blocks)
 
     def block(self, number: int) -> Block | None:
         """Block of a number, from 0; None past either end."""
-        if number >= len(self._blocks):
-            self.gather(number + 1 - len(self._blocks))
+        self.gather(number + 1 - len(self._blocks))
         return self._blocks[number] if 0 <= number < len(self._blocks) else None
 
     def blocks(self, number: int = 0, step: int = 1) -> Iterator[Block]:
@@ -147,13 +146,10 @@ class Source:
 
     def block_at(self, place: int) -> Block | None:
         """Block that holds a place; None past the end."""
-        while place > self._end and not self.gather(100):
+        while place > self.end and not self.gather(100):
             pass
-        if place > self._end:
-            return None
-        return self._blocks[
-            max(bisect_right(self._blocks, place, key=lambda block: block.start) - 1, 0)
-        ]
+        at = bisect_right(self._blocks, place, key=lambda block: block.start) - 1
+        return self._blocks[max(at, 0)] if place <= self.end else None
 
     def anchor(self, name: str) -> int | None:
         """Place of the block with an anchor; None if there is none."""
@@ -163,7 +159,7 @@ class Source:
 
     def progress(self, place: int) -> float:
         """Share of the book before a place, 0 to 1; about, as long as it is not all read."""
-        whole = self._end if self.complete else max(self.expected, self._end)
+        whole = self.end if self.complete else max(self.expected, self.end)
         return min(place / max(whole, 1), 1.0)
 
     def headings(self) -> list[Heading]:
@@ -177,11 +173,12 @@ class Source:
 
     def note(self, sentence: str) -> None:
         """Keep a sentence on what was read otherwise than the file says, for `notes`."""
-        self._notes.append(sentence)
+        self._notes.setdefault(sentence, True)
 
     def notes(self) -> list[str]:
         """Sentences on what was read otherwise than the file says; each is given once."""
-        notes, self._notes = self._notes, []
+        notes = [sentence for sentence, is_new in self._notes.items() if is_new]
+        self._notes = dict.fromkeys(self._notes, False)
         return notes
 
     def file(self, address: str) -> bytes:
@@ -198,31 +195,20 @@ class Source:
 
     def sha256(self) -> str:
         """SHA-256 of the bytes of the book, in hexadecimal."""
-        digest = hashlib.sha256()
         self.stream.seek(0)
-        while piece := self.stream.read(1 << 20):
-            digest.update(piece)
-        return digest.hexdigest()
+        return hashlib.file_digest(self.stream, "sha256").hexdigest()
 
     def close(self) -> None:
         """Let go of the file; blocks that were read stay."""
         self.stream.close()
 
 
-def _pieces(block: Block) -> Iterator[Block]:
-    """A block, or its pieces, cut after a sentence or at least a word."""
+def _pieces(text: str) -> Iterator[tuple[int, int]]:
+    """First and last place of the pieces of a text, cut after a sentence or at least a word."""
     start = 0
-    for found in _PIECE.finditer(block.text) if len(block.text) > PIECE else ():
-        if len(block.text) - start > PIECE:
-            yield _piece(block, start, found.end())
-            start = found.end()
-    yield block if not start else _piece(block, start, len(block.text))
-
-
-def _piece(block: Block, start: int, stop: int) -> Block:
-    piece = block.replace(
-        text=block.text[start:stop],
-        marks=cut_marks(block.marks, start, stop),
-        cells=None if block.cells is None else block.cells[start:stop],
-    )
-    return piece.replace(continues=True, anchors=(), entry=None) if start else piece
+    while len(text) - start > PIECE:
+        found = _PIECE.match(text, start)
+        assert found is not None
+        yield start, found.end()
+        start = found.end()
+    yield start, len(text)

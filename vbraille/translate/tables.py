@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import string
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -11,10 +12,10 @@ from vbraille.braille.cells import Cells
 from vbraille.errors import InputError
 from vbraille.translate.blocks import MarkKind
 from vbraille.translate.languages import TableInfo, find_table, list_tables, preference, tables_of
-from vbraille.translate.liblouis import LOUIS, emphasis_bit
+from vbraille.translate.liblouis import LOUIS
 from vbraille.translate.spellings import Kind, Undefined
 from vbraille.translate.undefined import Written, cells_of, write
-from vbraille.wording import setting
+from vbraille.wording import nearest, setting
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,8 +23,7 @@ if TYPE_CHECKING:
     from vbraille.translate.blocks import Mark
 
 _SIX_DOTS = 0x3F
-_SMALL = "abcdefghijklmnopqrstuvwxyz"
-_DIGITS = "1234567890"
+_LONGEST_NAME = 1_000  # liblouis puts a name into 2 kB without checking that it fits
 _CLASSES = {
     MarkKind.ITALIC: "italic",
     MarkKind.BOLD: "bold",
@@ -35,7 +35,6 @@ _HYPHEN = b"\x24"  # dots 3 and 6
 _UEB_CONTINUATION = b"\x10"  # dot 5, after which a number goes on without its sign
 _PARTING = "-‐‑–—/"
 _PUNCTUATION = ".,;:!?()[]«»“”‘’\"'…"
-_MARKED = (Kind.MARKED, Kind.UNENDING)
 
 
 class BrailleTable:
@@ -57,7 +56,16 @@ class BrailleTable:
     def __init__(self, name: str, undefined: Undefined = Undefined.MARK) -> None:
         self.name = name
         self.undefined = undefined
-        LOUIS.translate(name, "a")
+        try:
+            if not 0 < len(name) <= _LONGEST_NAME or "\0" in name:
+                raise RuntimeError
+            LOUIS.translate(name, "a")
+        except RuntimeError:
+            names = [table.name for table in list_tables()]
+            raise InputError(
+                f"unknown braille table {name[:_LONGEST_NAME]!r}"
+                f"{nearest(name[:_LONGEST_NAME], names, 3)} (vbraille tables lists all)"
+            ) from None
 
     def translate(self, text: str, marks: Sequence[Mark] = (), start: int = 0) -> Cells:
         """Cells of a text, whose first character is at a place of a book.
@@ -73,7 +81,13 @@ class BrailleTable:
 
     def write(self, text: str, marks: Sequence[Mark] = ()) -> Written:
         """Dots of a text, with what was written otherwise than it stands."""
-        written = write(self.name, text, self._forms(text, marks), self.undefined)
+        forms = None
+        for mark in marks:
+            if bit := self._emphasis.get(mark.kind):
+                forms = forms or [0] * len(text)
+                for place in range(mark.start, min(mark.end, len(text))):
+                    forms[place] |= bit
+        written = write(self.name, text, forms, self.undefined)
         if not self.eight_dots:
             written.masks = bytes(mask & _SIX_DOTS for mask in written.masks)
         return written
@@ -81,7 +95,7 @@ class BrailleTable:
     def unknown(self, text: str) -> str:
         """Characters of a text that only a marker can stand for, each once."""
         found = self.write(text).otherwise
-        return "".join(part for kind, part in found if kind in _MARKED)
+        return "".join(part for kind, part in found if kind in (Kind.MARKED, Kind.UNENDING))
 
     def cells_of(self, text: str) -> bytes:
         """Dot masks of a short text; none if the table leaves some of it undefined."""
@@ -109,14 +123,14 @@ class BrailleTable:
             ending = b""  # a line may end at these
         elif self.is_ueb and (numbers or not word.strip(_PUNCTUATION).isalpha()):
             ending = _UEB_CONTINUATION
-        if numbers and ending == _UEB_CONTINUATION:
-            return ending, b""
-        whole = b""
-        if numbers or (before.isupper() and after.isupper()):
+        sign = whole = b""
+        if numbers and ending != _UEB_CONTINUATION:
             whole = self.cells_of(following)
-            rest = rest if numbers else self.cells_of(following.lower())
-        sign = whole.removesuffix(rest)
-        return ending, sign if rest and len(sign) < len(whole) else b""
+            sign = whole.removesuffix(rest)
+        elif before.isupper() and after.isupper():
+            whole = self.cells_of(following)
+            sign = whole.removesuffix(self.cells_of(following.lower()))
+        return ending, sign if len(sign) < len(whole) else b""
 
     @cached_property
     def info(self) -> TableInfo:
@@ -127,14 +141,10 @@ class BrailleTable:
     @cached_property
     def eight_dots(self) -> bool:
         """Tell if the table writes with dots 7 and 8, but for letters of other scripts."""
-        if self.info.dots:
+        if self.info.dots or self.info.kind == "literary":
             return self.info.dots == 8
-        samples = (_SMALL + _SMALL.upper() + _DIGITS,)
-        for sample in (_DIGITS, _SMALL) if self.info.kind == "literary" else samples:
-            masks = LOUIS.translate(self.name, sample).masks
-            if any(masks):
-                return max(masks) > _SIX_DOTS
-        return False
+        masks = LOUIS.translate(self.name, string.ascii_letters + string.digits).masks
+        return max(masks, default=0) > _SIX_DOTS
 
     @cached_property
     def is_ueb(self) -> bool:
@@ -152,17 +162,11 @@ class BrailleTable:
         """Opening and closing bracket that the table can write; full cells if it has none."""
         return next((pair for pair in ("[]", "()") if self.cells_of(pair)), "⠿⠿")
 
-    def _forms(self, text: str, marks: Sequence[Mark]) -> list[int] | None:
-        """Bits of the classes of emphasis for each character; None if there is none."""
-        forms = None
-        for mark in marks:
-            name = _CLASSES.get(mark.kind)
-            bit = 0 if name is None else emphasis_bit(self.name, name)
-            if bit:
-                forms = forms or [0] * len(text)
-                for place in range(mark.start, min(mark.end, len(text))):
-                    forms[place] |= bit
-        return forms
+    @cached_property
+    def _emphasis(self) -> dict[MarkKind, int]:
+        """Bits of the table's classes of emphasis; 0 for a class that it does not have."""
+        bits = LOUIS.ask("emphasis_bits", self.name, list(_CLASSES.values()))
+        return dict(zip(_CLASSES, bits, strict=True))
 
 
 def to_cells(written: Written, length: int, start: int = 0) -> Cells:
@@ -195,19 +199,15 @@ def choose_table(
     InputError
         If there is no such table, or both a table and a language are given.
     """
-    try:
-        how = Undefined(undefined)
-    except ValueError:
-        raise InputError(
-            f"undefined is {undefined!r:.40}; it must be {' or '.join(Undefined)}"
-        ) from None
+    if undefined not in list(Undefined):
+        raise InputError(f"undefined is {undefined!r:.40}; it must be {' or '.join(Undefined)}")
     if table is None:
-        return BrailleTable(find_table("en" if language is None else language, grade), how)
-    if language is not None or grade is not None:
+        table = find_table("en" if language is None else language, grade)
+    elif language is not None or grade is not None:
         raise InputError(
             f"a table has its language and grade; give either {setting('table')} or those"
         )
-    return BrailleTable(table, how)
+    return BrailleTable(table, Undefined(undefined))
 
 
 def six_dot_table(language: str) -> str | None:

@@ -29,10 +29,12 @@ _XML_HEAD = re.compile(r"^\s*<\?xml.*?\?>|<!DOCTYPE\s[^>\[]*(?:\[.*?\]\s*)?>", r
 _VAGUE = {"iso-8859-1": "cp1252", "latin1": "cp1252", "us-ascii": "cp1252"}
 
 
-def names(form: str) -> dict[str, frozenset[str]]:
+def names(form: str) -> dict[str, Any]:
     """Names of a format's elements by what they are to a reader, as `names.toml` has them."""
     told = tomllib.loads(Path(__file__).with_name("names.toml").read_text("utf-8"))[form]
-    return {what: frozenset(listed.split()) for what, listed in told.items()}
+    return {
+        what: frozenset(row.split()) if isinstance(row, str) else row for what, row in told.items()
+    }
 
 
 def inside(member: str, address: str) -> str:
@@ -126,8 +128,14 @@ class _Builder:
         self.root = Element("root")
         self.flattened = self._count = 0
         self._open = [self.root]
+        self._text: list[str] = []  # in parts, as the parser cuts it
+
+    def _say(self) -> None:
+        self._open[-1].say("".join(self._text))
+        self._text = []
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
+        self._say()
         self._count += 1
         if self._count > MOST_ELEMENTS:
             raise InputError(
@@ -143,10 +151,11 @@ class _Builder:
         self._open.append(child)
 
     def end(self, _tag: str) -> None:
+        self._say()
         self._open.pop()
 
     def data(self, text: str) -> None:
-        self._open[-1].children.append(text)
+        self._text.append(text)
 
     def close(self) -> None:
         pass

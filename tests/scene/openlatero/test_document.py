@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 from typing import get_args
 
-from vbraille.scene.openlatero.elements import MOST_BYTES, MOST_ELEMENTS, PATTERNS, TEXTURES
-from vbraille.scene.openlatero.textures import OPERATIONS
+from vbraille.scene.openlatero.elements import MOST_BYTES, MOST_ELEMENTS
+from vbraille.scene.openlatero.making import OPERATIONS, PATTERNS, TEXTURES
 from vbraille.scene.patterns import AnyPattern
 
 PAGE = Path(__file__).parents[3] / "docs" / "converting.md"

@@ -10,7 +10,7 @@ from tests.tiers import examples
 from vbraille.render.labels import Assets
 from vbraille.scene.converting import write_scene
 from vbraille.scene.openlatero import read_gen
-from vbraille.scene.openlatero.elements import PATTERNS, TEXTURES
+from vbraille.scene.openlatero.making import PATTERNS, TEXTURES
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Scene
 from vbraille.toml import TomlFile

@@ -1,6 +1,5 @@
 """Questions: what may be typed, how it is kept, and how it is scored."""
 
-import numpy as np
 import pytest
 
 from tests.sessions.planning.test_protocols import load
@@ -109,10 +108,10 @@ def test_a_value_is_turned_until_it_is_equal(tmp_path):
     assert asks.turned(2.95, 3) == 3.0
     turned = trial.turned("dot_width_mm", 1.7)
     lines = [asks.controlled(Button(number=n, pressed=True), turned) for n in (1, 2, 3, 4)]
-    assert lines == ["-", "+", "equal", ""]
+    assert lines == ["-", "+", "=", ""]
     lines = [asks.controlled(Knob(*turn), turned) for turn in ((2, 0.0), (2, 1.0), (1, 0.5))]
     assert lines == ["-" * 12, "+" * 13, ""]
-    assert asks.parse("equal", turned, None) == "1.7"
+    assert asks.parse("equal", turned, None) == asks.parse("=", turned, None) == "1.7"
     with pytest.raises(ValueError, match="type"):
         parse("about equal")
 
@@ -129,8 +128,7 @@ def test_pictures_are_named_by_keys_in_any_order():
         asks.parse(keys[0], trial, None)
     with pytest.raises(ValueError, match="~"):
         asks.parse("~", trial, None)
-    drawn = np.random.default_rng(1)
-    assert asks.parse(asks.guess(trial, drawn), trial, None)
+    assert len({asks.parse(guess, trial, None) for guess in asks.guesses(trial)}) > 1
 
 
 def item(**how):

@@ -15,7 +15,8 @@ from vbraille.render import (
     Tuning,
     single_row,
 )
-from vbraille.sessions.simulated.feeling import felt_mm, nearer, nominal_mm
+from vbraille.sessions.planning.questions import Which
+from vbraille.sessions.simulated.feeling import FeltTrial
 from vbraille.sessions.simulated.observer import LEAST_FELT, Observer
 from vbraille.sessions.simulated.skin import FeltFrames, reference_per_mm2, smoothing_mm
 from vbraille.simulation.specs import parse_hand
@@ -213,8 +214,8 @@ def stimuli(parameter, hand):
 
 def compare(observer, first, second, parameter, rng):
     """Choose which of two is nearer to the nominal length, as the reader of sessions does."""
-    felt = [felt_mm(observer, parameter, each, None) for each in (first, second)]
-    return nearer(felt, nominal_mm(parameter, observer.geometry), observer.noise, rng)
+    felt = FeltTrial(observer, rng, [first, second], [1, 1], slice(0, 1), parameter)
+    return int(Which().simulate(felt))
 
 
 @pytest.mark.parametrize("hand", ["sweep:20", "device", "fluent"] if JIT else ["sweep:40"])

@@ -11,8 +11,8 @@ from vbraille.cli import options
 from vbraille.cli.printing import print_json, say
 
 if TYPE_CHECKING:
+    from vbraille.pictures.checking import ElementReport, SceneReport
     from vbraille.pictures.loading import LoadedScene
-    from vbraille.scene.checking import ElementReport, SceneReport
 
 
 @click.group(cls=options.Group)
@@ -25,16 +25,14 @@ def command() -> None:
 @options.json
 def check(file: str, json: bool) -> int:
     """List the elements of a picture, and what is hard to feel."""
-    from dataclasses import asdict, replace
+    from dataclasses import asdict
 
-    from vbraille.pictures.checking import felt_advice
+    from vbraille.pictures.checking import check_scene
     from vbraille.pictures.loading import load_scene
     from vbraille.render import MODELS
-    from vbraille.scene.checking import check_scene
 
     loaded = load_scene(file, MODELS["stress2"].style)
-    report = check_scene(loaded.opened, loaded.boxes())
-    report = replace(report, advice=(*report.advice, *felt_advice(loaded)))
+    report = check_scene(loaded)
     if not json:
         _print(loaded, report)
         return 0

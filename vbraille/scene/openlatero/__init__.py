@@ -4,4 +4,77 @@ OpenLatero is the open software of the author of the thesis, and its files are t
 there is. What a file says is told with its line wherever it differs from what is shown here.
 """
 
-from vbraille.scene.openlatero.reading import read_gen as read_gen
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from vbraille.errors import InputError
+from vbraille.scene.filebytes import read_bytes
+from vbraille.scene.locations import FoundScene
+from vbraille.scene.openlatero.elements import MOST_BYTES, Context, read_root
+from vbraille.scene.openlatero.making import SURFACE_MM, pattern_of
+from vbraille.scene.patterns import Group
+from vbraille.scene.scene import Canvas, Scene
+from vbraille.scene.traversal import placed_children
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from vbraille.scene.patterns import AnyPattern, Operation
+    from vbraille.scene.traversal import Steps
+
+
+def read_gen(path: Path, *, as_shown: bool = False) -> FoundScene:
+    """Read a file of OpenLatero's, a scene or a texture.
+
+    Parameters
+    ----------
+    path
+        Path of the file.
+    as_shown
+        Whether the scene is to be as OpenLatero shows it, where that is not what the file says.
+
+    Returns
+    -------
+    FoundScene
+        The scene, lines of its elements, and what was ignored or is shown differently. Whatever
+        cannot be shown is left out.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or is none of OpenLatero's.
+    """
+    context = Context(path.parent, as_shown)
+    root = read_root(read_bytes(path, MOST_BYTES), str(path), context)
+    part = root.Generator.Pattern if root.Generator.there else root.Pattern
+    if root.Generator.there and not part.there:
+        root.Generator.say("it holds no Pattern, so the scene is empty")
+    elif not part.there:
+        raise InputError(
+            f"{path} holds no Generator and no Pattern; give a scene or texture of OpenLatero's"
+        )
+    shown = pattern_of(part) if part.there else None
+    operation: Operation = "maximum"
+    elements: tuple[AnyPattern, ...] = () if shown is None else (shown,)
+    if isinstance(shown, Group) and shown.by is None:
+        alone = Group(operation=shown.operation, parts=shown.parts)
+        if shown == alone:  # it is the scene itself
+            operation, elements = shown.operation, shown.parts
+    scene = Scene(
+        canvas=Canvas(width_mm=SURFACE_MM[0], height_mm=SURFACE_MM[1]),
+        title="".join(c for c in path.stem if c.isprintable()),
+        operation=operation,
+        elements=elements,
+        signals=context.signals,
+    )
+    lines: dict[Steps, int] = {}
+    left: list[tuple[Steps, AnyPattern]] = [
+        (("elements", number), element) for number, element in enumerate(elements)
+    ]
+    while left:
+        steps, pattern = left.pop()
+        if id(pattern) in context.made:
+            lines[steps] = context.made[id(pattern)][1]
+        left += [((*steps, *more), child) for more, child in placed_children(pattern)]
+    return FoundScene(scene, lines, context.said())

@@ -3,8 +3,9 @@
 A row has the name of an element, its kind, what is usual, its range where it is not that of the
 kind, and after ``>`` the name that it has in our scenes. Kinds are units, ``number`` for none,
 ``yesno``, ``place``, ``words`` of which the first is usual, ``speed`` in a unit or in Hz,
-``text``, ``pattern``, ``unused``, and ``patterns``, ``places`` and ``sounds``, of which there may
-be several; all others are names of parts. A part or a type may stand at several places.
+``text``, ``pattern``, ``unused``, ``unshown``, of which that is said, and ``patterns``, ``places``
+and ``sounds``, of which there may be several; all others are names of parts. A part or a type may
+stand at several places.
 """
 
 from __future__ import annotations
@@ -178,8 +179,8 @@ along
   ridge_size           mm        2                    > ridge_mm
   gap_size             mm        0                    > gap_mm
   velocity             speed     0 mm/s
-  invert               yesno     no
-  PitchModulator       pitch
+  invert               unshown
+  PitchModulator       unshown
 cue
   cue                  words     none | inherent | superposed | suppressed | vibration | blend
   velocity             mm/s      50
@@ -193,7 +194,7 @@ bands
   ridge_size           mm        2                    > ridge_mm
   gap_size             mm        30                   > gap_mm
   velocity             speed     0 mm/s
-  invert               yesno     no
+  invert               unshown
 fill_texture
   enable               yesno     no
   gap                  mm        0       -10000..10000

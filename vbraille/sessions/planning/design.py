@@ -13,15 +13,13 @@ from typing import Annotated, Literal, NamedTuple
 
 from msgspec import Meta, structs
 
-from vbraille.braille.cells import UNICODE_BLANK
 from vbraille.braille.spelling import spell, spell_string, to_braille
 from vbraille.sessions.planning.spellings import cells_of
-from vbraille.sessions.planning.trial import Stimulus
+from vbraille.sessions.planning.trial import BLANK, Stimulus
 from vbraille.sessions.planning.values import Count, Look, Number, Parameter
 from vbraille.toml import Table, WrongValue
 
 MOST_INTERVALS = 5
-BLANK = chr(UNICODE_BLANK)
 
 
 class Setting(NamedTuple):

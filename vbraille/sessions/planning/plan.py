@@ -15,10 +15,10 @@ from msgspec import Struct, structs
 from vbraille.braille.cells import Cells, dots_of
 from vbraille.braille.spelling import to_braille
 from vbraille.errors import InputError
-from vbraille.sessions.planning.design import BLANK, Catch, Setting
+from vbraille.sessions.planning.design import Catch, Setting
 from vbraille.sessions.planning.order import Limit, balanced_orders, ordered
 from vbraille.sessions.planning.protocol import Protocol
-from vbraille.sessions.planning.trial import Trial
+from vbraille.sessions.planning.trial import BLANK, Trial
 from vbraille.sessions.planning.values import Look
 from vbraille.toml import which
 

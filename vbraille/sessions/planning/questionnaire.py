@@ -9,7 +9,7 @@ from typing import Literal
 
 from msgspec import structs
 
-from vbraille.sessions.planning.questions import Scale, parse_number
+from vbraille.sessions.planning.questions import Scale, choose, parse_number
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.planning.values import Label, Number, Sentence
 from vbraille.toml import Table, WrongValue
@@ -58,8 +58,6 @@ class Item(Table, frozen=True, kw_only=True):
             if self.least is None or self.most is None:
                 raise WrongValue("kind", "is 'rating'; give the ends of the scale, least and most")
             self._scale  # noqa: B018  (it checks itself)
-        elif self.labels:
-            raise WrongValue("labels", "are for kind = 'rating'; leave them out")
         fixed = not any(COLUMN.search(each) for each in (self.right, *self.choices))
         if self.right and fixed and self.choices and self.right not in self.choices:
             raise WrongValue("right", f"{self.right!r} is not one of choices")
@@ -101,28 +99,23 @@ class Item(Table, frozen=True, kw_only=True):
 
     def parse(self, text: str) -> str:
         """Read a reply; ValueError if the text is none."""
-        word = text.strip()
-        if self.kind == "rating":
-            return str(self._scale.parse(word))
-        if self.kind == "number":
-            least = -math.inf if self.least is None else self.least
-            return parse_number(
-                word, least, math.inf if self.most is None else self.most, self.typed
-            )
-        for choice in self.choices:
-            if word.casefold() == choice.casefold():
-                return choice
-        if self.choices or not word:
-            raise ValueError(f"{word!r} is not an answer; type {self.typed}")
-        return word
+        match self.kind:
+            case "choice":
+                return choose(text, {each.casefold(): each for each in self.choices}, self.typed)
+            case "rating":
+                return str(self._scale.parse(text))
+            case "number":
+                least = -math.inf if self.least is None else self.least
+                most = math.inf if self.most is None else self.most
+                return parse_number(text, least, most, self.typed)
+        if not text.strip():
+            raise ValueError("nothing was typed; type an answer")
+        return text.strip()
 
     def simulate(self) -> str:
         """Give the right answer, or the first that there may be."""
-        if self.right:
-            return self.right
-        if self.kind in ("number", "rating"):
-            return f"{self.least if self.least is not None else self.most or 0:g}"
-        return self.choices[0] if self.choices else "nothing"
+        number = f"{self.most or 0 if self.least is None else self.least:g}"
+        return self.right or next(iter(self.choices), number)
 
 
 def due(

@@ -12,26 +12,20 @@ about people.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+from collections.abc import Sequence
+from itertools import product
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from msgspec import Meta
 
-from vbraille.braille.spelling import (
-    ORDINALS,
-    UNREAD,
-    parse_answer,
-    parse_choice,
-    say_cells,
-    to_answer,
-    to_braille,
-)
+from vbraille.braille.spelling import ORDINALS, UNREAD, parse_answer, say_cells, to_answer
 from vbraille.devices.events import Button, Knob
 from vbraille.sessions.planning.spellings import parse_text
-from vbraille.sessions.planning.trial import Trial
+from vbraille.sessions.planning.trial import BLANK, Trial
 from vbraille.sessions.planning.values import ButtonNumber, Label, Number, Positive, Sentence
-from vbraille.sessions.simulated.feeling import LENGTHS, FeltTrial, nearer
-from vbraille.sessions.simulated.observer import LEAST_FELT, TIE
+from vbraille.sessions.simulated.feeling import LENGTHS, TIE, FeltTrial
+from vbraille.sessions.simulated.observer import LEAST_FELT
 from vbraille.toml import Table, WrongValue
 
 RIGHT, WRONG = "right", "wrong"
@@ -40,6 +34,7 @@ GOOD = frozenset((RIGHT, HIT, REJECTION))
 LEAST_SHARE = 1e-3  # a magnitude may not be 0
 MOST_STEPS = 100
 LEAST_NUMBER = math.ulp(0.0)  # above 0
+ANY = ("strings", "pictures", "single", "pairs", "standard")
 
 
 class Spelling(NamedTuple):
@@ -47,6 +42,31 @@ class Spelling(NamedTuple):
 
     keys: dict[str, int]
     shown_dots: int
+
+
+def choose(text: str, answers: dict[str, str], typed: str) -> str:
+    """Return the one of some answers that a text stands for, in either case.
+
+    Raises
+    ------
+    ValueError
+        If it stands for none of them; the sentence says what may be typed.
+    """
+    word = text.strip()
+    if word.casefold() not in answers:
+        raise ValueError(f"{word!r} is not an answer; type {typed}")
+    return answers[word.casefold()]
+
+
+def parse_number(text: str, least: float, most: float, typed: str) -> str:
+    """Read a number with a point or a comma; ValueError if it is none, or out of bounds."""
+    try:
+        number = float(text.strip().replace(",", "."))
+    except ValueError:
+        number = math.nan
+    if not (least <= number <= most and math.isfinite(number)):
+        raise ValueError(f"{text.strip()!r} is not an answer; type {typed}")
+    return f"{number:.15g}"
 
 
 class Scale(Table, frozen=True, kw_only=True):
@@ -75,28 +95,15 @@ class Scale(Table, frozen=True, kw_only=True):
         ends = (self.least, self.most)
         return " to ".join(f"{n} ({self.names[n]})" if n in self.names else str(n) for n in ends)
 
+    @property
+    def answers(self) -> dict[str, str]:
+        """The steps, by their numbers and labels."""
+        steps = {str(n): str(n) for n in range(self.least, self.most + 1)}
+        return steps | {label.casefold(): str(n) for n, label in self.names.items()}
+
     def parse(self, text: str) -> int:
         """Read a number of the scale, or its label; ValueError if the text is neither."""
-        word = text.strip()
-        for number, label in self.names.items():
-            if word.casefold() == label.casefold():
-                return number
-        digits = word.removeprefix("-")
-        known = digits.isascii() and digits.isdecimal() and len(digits) < 9
-        if not known or not self.least <= int(word) <= self.most:
-            raise ValueError(f"{word!r} is not on the scale; type {self.typed}")
-        return int(word)
-
-
-def parse_number(text: str, least: float, most: float, typed: str) -> str:
-    """Read a number with a point or a comma; ValueError if it is none, or out of bounds."""
-    try:
-        number = float(text.strip().replace(",", "."))
-    except ValueError:
-        number = math.nan
-    if not (least <= number <= most and math.isfinite(number)):
-        raise ValueError(f"{text.strip()!r} is not an answer; type {typed}")
-    return f"{number:.15g}"
+        return int(choose(text, self.answers, self.typed))
 
 
 class Question(Table, frozen=True, kw_only=True, tag_field="kind"):
@@ -111,10 +118,10 @@ class Question(Table, frozen=True, kw_only=True, tag_field="kind"):
     """
 
     typed = "the answer"
-    asks_of = ("strings", "pictures", "single")
+    asks_of = ANY
     counts_catch = False  # whether catch trials are what is asked about
     scores = False  # whether a procedure can go by its answers
-    alarm = ""  # answer that a false alarm is
+    alarm = ""  # answer that is right where there is a signal; empty if answers tell of none
     confirm = False  # whether a typed answer is said back before it counts
 
     ask: str = ""
@@ -133,9 +140,13 @@ class Question(Table, frozen=True, kw_only=True, tag_field="kind"):
         """Return the line that a button or a knob of the device stands for; empty for none."""
         return ""
 
+    def answers(self, trial: Trial) -> dict[str, str]:
+        """Return the answers that there are, by what may be typed for them."""
+        return {}
+
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
         """Return an answer in the spelling in which it is kept; ValueError if the text is none."""
-        raise NotImplementedError
+        return choose(text, self.answers(trial), self.typed)
 
     def right_answer(self, trial: Trial) -> str:
         """Return the right answer as it is kept; empty if there is none."""
@@ -144,7 +155,14 @@ class Question(Table, frozen=True, kw_only=True, tag_field="kind"):
     def outcome(self, trial: Trial, answer: str) -> str:
         """Return how an answer is scored; empty if nothing is right or wrong."""
         right = self.right_answer(trial)
-        return "" if not right else RIGHT if answer == right else WRONG
+        if not right:
+            return ""
+        is_right = answer == right
+        if not self.alarm:
+            return RIGHT if is_right else WRONG
+        if right == self.alarm:
+            return HIT if is_right else MISS
+        return REJECTION if is_right else FALSE_ALARM
 
     def correct(self, trial: Trial, answer: str) -> bool | None:
         """Tell whether an answer is right; None if nothing is."""
@@ -172,13 +190,13 @@ class Question(Table, frozen=True, kw_only=True, tag_field="kind"):
         """Return why the simulated reader cannot answer about a parameter; empty if it can."""
         return ""
 
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+    def simulate(self, felt: FeltTrial) -> str:
         """Answer by what was felt."""
         raise NotImplementedError
 
-    def guess(self, trial: Trial, random: np.random.Generator) -> str:
-        """Answer without having felt anything."""
-        raise NotImplementedError
+    def guesses(self, trial: Trial) -> Sequence[str]:
+        """Return answers of which one is given where nothing was felt."""
+        return sorted({*self.answers(trial).values()})
 
 
 class Identify(Question, frozen=True, kw_only=True, tag="identify"):
@@ -202,9 +220,8 @@ class Identify(Question, frozen=True, kw_only=True, tag="identify"):
 
     def outcome(self, trial: Trial, answer: str) -> str:
         """Return right if all cells are; of a blank catch trial, if no dot was felt."""
-        if trial.catch == "blank":
-            return RIGHT if set(answer) <= {UNREAD, to_braille((0,))} else WRONG
-        return super().outcome(trial, answer)
+        felt = answer.replace(UNREAD, BLANK) if trial.catch == "blank" else answer
+        return super().outcome(trial, felt)
 
     def said(self, answer: str, spelling: Spelling) -> str:
         """Return the cells by their letters and keys."""
@@ -212,15 +229,15 @@ class Identify(Question, frozen=True, kw_only=True, tag="identify"):
 
     def was(self, trial: Trial, spelling: Spelling) -> str:
         """Return the cells, or the text that they stand for."""
-        return trial.stimuli[0].text or self.said(trial.cells, spelling)
+        return trial.stimuli[0].text or super().was(trial, spelling)
 
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+    def simulate(self, felt: FeltTrial) -> str:
         """Give the cells as they were felt."""
-        return to_answer(felt.cells(random))
+        return to_answer(felt.cells())
 
-    def guess(self, trial: Trial, random: np.random.Generator) -> str:
-        """Say that no cell was read."""
-        return UNREAD * len(trial.cells)
+    def guesses(self, trial: Trial) -> Sequence[str]:
+        """Return that no cell was read."""
+        return [UNREAD * len(trial.cells)]
 
 
 class Chosen(Question, frozen=True, kw_only=True):
@@ -228,19 +245,17 @@ class Chosen(Question, frozen=True, kw_only=True):
 
     typed = "the number of one: 1, 2 and so on, or first, second"
     scores = True
-    among = 0  # of how many one is chosen; 0 for all
+    among = len(ORDINALS)  # of how many of the first one is chosen
 
-    def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
-        """Read a choice."""
-        return parse_choice(text, self.among or len(trial.stimuli))
+    def answers(self, trial: Trial) -> dict[str, str]:
+        """Return the numbers, by themselves and by their ordinals."""
+        count = min(self.among, len(trial.stimuli))
+        names = enumerate(ORDINALS[:count], 1)
+        return {word: str(n) for n, name in names for word in (str(n), name)}
 
     def said(self, answer: str, spelling: Spelling) -> str:
         """Return the ordinal."""
         return ORDINALS[int(answer) - 1]
-
-    def guess(self, trial: Trial, random: np.random.Generator) -> str:
-        """Choose any."""
-        return str(random.integers(self.among or len(trial.stimuli)) + 1)
 
 
 class Which(Chosen, frozen=True, kw_only=True, tag="which"):
@@ -264,15 +279,15 @@ class Which(Chosen, frozen=True, kw_only=True, tag="which"):
         if (self.right == "nearest") != (self.reference is not None):
             raise WrongValue("right", "'nearest' and reference go together; give both or neither")
 
-    def worth(self, value: float) -> float:
+    def worth(self, value: float, reference: float | None) -> float:
         """Return a number that is the higher, the more right a value is."""
-        if self.reference is not None:
-            return -abs(value - self.reference)
+        if reference is not None:
+            return -abs(value - reference)
         return -value if self.right == "less" else value
 
     def right_answer(self, trial: Trial) -> str:
         """Return the number of the value that is right, if it is one."""
-        worth = [self.worth(value) for value in trial.values]
+        worth = [self.worth(value, self.reference) for value in trial.values]
         if self.right is None or worth.count(max(worth)) > 1:
             return ""
         return str(worth.index(max(worth)) + 1)
@@ -283,20 +298,20 @@ class Which(Chosen, frozen=True, kw_only=True, tag="which"):
 
     def unfelt(self, parameter: str) -> str:
         """Return why the simulated reader cannot choose."""
-        if parameter == "texture_cycles":
-            return "the simulated reader does not feel which texture is finer"
-        if self.right == "nearest" and parameter not in LENGTHS:
+        by_length = parameter in LENGTHS
+        if parameter == "texture_cycles" or (self.right == "nearest" and not by_length):
             return f"the simulated reader feels how strong a dot is, and not its {parameter}"
         return ""
 
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
-        """Choose what is nearest to the usual length, or what is right, or the strongest."""
-        values, unit = felt.values()
-        if self.right is None and felt.by_length:
-            return str(nearer(values, unit, noise, random))
-        drawn = np.array([self.worth(value) for value in values])
-        drawn += noise * unit * random.standard_normal(len(values))
-        return str(int(np.nan_to_num(drawn, nan=-math.inf).argmax()) + 1)
+    def simulate(self, felt: FeltTrial) -> str:
+        """Choose what is right; of preferences the nearest to the usual length, or the strongest.
+
+        The first is chosen of those that are equal.
+        """
+        usual = felt.unit if self.right is None and felt.by_length else self.reference
+        worth = np.array([self.worth(value, usual) for value in felt.drawn()])
+        tie = 0.0 if felt.noise or self.right else TIE * felt.unit
+        return str(int(np.argmax(worth >= worth.max() - tie)) + 1)
 
 
 class Odd(Chosen, frozen=True, kw_only=True, tag="odd"):
@@ -308,9 +323,9 @@ class Odd(Chosen, frozen=True, kw_only=True, tag="odd"):
         """Return the number of the value that is there once."""
         return next(str(n) for n, v in enumerate(trial.values, 1) if trial.values.count(v) == 1)
 
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+    def simulate(self, felt: FeltTrial) -> str:
         """Choose the one that is felt furthest from the middle one."""
-        drawn = _drawn(felt, noise, random)
+        drawn = felt.drawn()
         return str(int(np.abs(drawn - np.median(drawn)).argmax()) + 1)
 
 
@@ -324,51 +339,20 @@ class Match(Chosen, frozen=True, kw_only=True, tag="match"):
         """Return the number of the first that has the value of the third."""
         return str(trial.values.index(trial.values[2]) + 1)
 
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+    def simulate(self, felt: FeltTrial) -> str:
         """Choose the one that is felt nearer to the third."""
-        first, second, third = _drawn(felt, noise, random)
+        first, second, third = felt.drawn()
         return "2" if abs(second - third) < abs(first - third) else "1"
 
 
-def _drawn(felt: FeltTrial, noise: float, random: np.random.Generator) -> np.ndarray:
-    """Return the values that are felt, with noise; 0 for one not felt."""
-    values, unit = felt.values()
-    return np.nan_to_num(values + noise * unit * random.standard_normal(len(values)))
-
-
 class OneOfTwo(Question, frozen=True, kw_only=True):
-    """Asks for one of two words, of which the first is right where there is a signal."""
+    """Asks for one of two words."""
 
     words: ClassVar[tuple[str, str]]
 
-    def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
-        """Read one of the words, or its first letter."""
-        for word in self.words:
-            if text.strip().casefold() in (word, word[0]):
-                return word
-        raise ValueError(f"{text.strip()!r} is not an answer; type {self.typed}")
-
-    def has_signal(self, trial: Trial) -> bool | None:
-        """Tell whether a trial has a signal; None if nothing is right."""
-        return None
-
-    def right_answer(self, trial: Trial) -> str:
-        """Return the word that is right."""
-        return {True: self.words[0], False: self.words[1], None: ""}[self.has_signal(trial)]
-
-    def outcome(self, trial: Trial, answer: str) -> str:
-        """Return hit, miss, false alarm or correct rejection."""
-        first = answer == self.words[0]
-        match self.has_signal(trial):
-            case None:
-                return ""
-            case True:
-                return HIT if first else MISS
-        return FALSE_ALARM if first else REJECTION
-
-    def guess(self, trial: Trial, random: np.random.Generator) -> str:
-        """Say either word."""
-        return self.words[random.integers(2)]
+    def answers(self, trial: Trial) -> dict[str, str]:
+        """Return the words, by themselves and by their first letters."""
+        return {mark: word for word in self.words for mark in (word, word[0])}
 
 
 class Same(OneOfTwo, frozen=True, kw_only=True, tag="same-different"):
@@ -379,17 +363,16 @@ class Same(OneOfTwo, frozen=True, kw_only=True, tag="same-different"):
     words = ("different", "same")
     alarm = "different"
 
-    def has_signal(self, trial: Trial) -> bool:
-        """Tell whether the two differ."""
-        return trial.stimuli[0] != trial.stimuli[1]
+    def right_answer(self, trial: Trial) -> str:
+        """Return whether the two differ."""
+        first, second = trial.stimuli
+        return "same" if first == second else "different"
 
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+    def simulate(self, felt: FeltTrial) -> str:
         """Say different of what is felt to differ by more than the noise of both."""
-        (one, two), unit = felt.values()
-        if math.isnan(one) or math.isnan(two):
-            return "different" if math.isnan(one) != math.isnan(two) else "same"
-        apart = (one - two) / unit + noise * math.sqrt(2) * float(random.standard_normal())
-        return "different" if abs(apart) > max(noise * math.sqrt(2), TIE) else "same"
+        first, second = felt.drawn() / felt.unit
+        least = max(felt.noise * math.sqrt(2), TIE)
+        return "different" if abs(first - second) > least else "same"
 
 
 class Detect(OneOfTwo, frozen=True, kw_only=True, tag="detect"):
@@ -402,22 +385,18 @@ class Detect(OneOfTwo, frozen=True, kw_only=True, tag="detect"):
     words = ("yes", "no")
     alarm = "yes"
 
-    def has_signal(self, trial: Trial) -> bool:
-        """Tell whether there was anything to feel."""
-        return not trial.stimuli[0].is_blank
-
-    def was(self, trial: Trial, spelling: Spelling) -> str:
-        """Return what there was."""
-        return "something" if self.has_signal(trial) else "nothing"
+    def right_answer(self, trial: Trial) -> str:
+        """Return whether there was anything to feel."""
+        return "no" if trial.stimuli[0].is_blank else "yes"
 
     def positive(self, trial: Trial, answer: str) -> bool:
         """Tell whether the answer is yes."""
         return answer == "yes"
 
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+    def simulate(self, felt: FeltTrial) -> str:
         """Say yes to what is felt beyond the noise."""
-        strength = felt.strength() + noise * float(random.standard_normal())
-        return "yes" if strength > max(noise, LEAST_FELT) else "no"
+        strength = felt.strength() + felt.jitter()
+        return "yes" if strength > max(felt.noise, LEAST_FELT) else "no"
 
 
 class Rate(Question, frozen=True, kw_only=True, tag="rating"):
@@ -431,42 +410,36 @@ class Rate(Question, frozen=True, kw_only=True, tag="rating"):
         The scale, as at `Scale`.
     """
 
-    asks_of = ("strings", "pictures", "single", "pairs", "standard")
-
     scale: Sentence
     least: int
     most: int
     labels: tuple[Sentence, ...] = ()
 
     def __post_init__(self) -> None:
-        self._steps  # noqa: B018  (it checks itself)
+        self._scale  # noqa: B018  (it checks itself)
 
     @property
-    def _steps(self) -> Scale:
+    def _scale(self) -> Scale:
         return Scale(least=self.least, most=self.most, labels=self.labels)
 
     @property
     def typed(self) -> str:
         """Words for what may be typed."""
-        return f"{self._steps.typed}, for {self.scale}"
+        return f"{self._scale.typed}, for {self.scale}"
 
-    def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
-        """Read a step of the scale."""
-        return str(self._steps.parse(text))
+    def answers(self, trial: Trial) -> dict[str, str]:
+        """Return the steps of the scale."""
+        return self._scale.answers
 
     def said(self, answer: str, spelling: Spelling) -> str:
         """Return the number, and its label if it has one."""
-        label = self._steps.names.get(int(answer))
+        label = self._scale.names.get(int(answer))
         return f"{answer}, {label}" if label else answer
 
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+    def simulate(self, felt: FeltTrial) -> str:
         """Put the strength, from 0 to 1, on the scale."""
-        share = felt.strength(-1) + noise * float(random.standard_normal())
-        return str(self.least + round(min(max(share, 0.0), 1.0) * (self.most - self.least)))
-
-    def guess(self, trial: Trial, random: np.random.Generator) -> str:
-        """Give any step."""
-        return str(random.integers(self.least, self.most + 1))
+        share = min(max(felt.strength(-1) + felt.jitter(), 0.0), 1.0)
+        return str(self.least + round(share * (self.most - self.least)))
 
 
 class Magnitude(Question, frozen=True, kw_only=True, tag="magnitude"):
@@ -478,8 +451,6 @@ class Magnitude(Question, frozen=True, kw_only=True, tag="magnitude"):
         Number that participants are told for a standard; None if they choose one.
     """
 
-    asks_of = ("strings", "pictures", "single", "pairs", "standard")
-
     modulus: Positive | None = None
 
     @property
@@ -490,16 +461,16 @@ class Magnitude(Question, frozen=True, kw_only=True, tag="magnitude"):
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
         """Read a number with a point or a comma."""
-        return parse_number(text, LEAST_NUMBER, math.inf, "a number above 0")
+        return parse_number(text, LEAST_NUMBER, math.inf, self.typed)
 
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+    def simulate(self, felt: FeltTrial) -> str:
         """Give the strength times the modulus."""
-        share = max(felt.share(), LEAST_SHARE) * math.exp(noise * float(random.standard_normal()))
-        return f"{(self.modulus or 1.0) * max(share, LEAST_SHARE):.3g}"
+        share = max(felt.share() * math.exp(felt.jitter()), LEAST_SHARE)
+        return f"{(self.modulus or 1.0) * share:.3g}"
 
-    def guess(self, trial: Trial, random: np.random.Generator) -> str:
-        """Give any number around the modulus."""
-        return f"{(self.modulus or 1.0) * math.exp(random.standard_normal()):.3g}"
+    def guesses(self, trial: Trial) -> Sequence[str]:
+        """Return numbers around the modulus."""
+        return [f"{(self.modulus or 1.0) * share:g}" for share in (0.25, 0.5, 1, 2, 4)]
 
 
 class Names(Table, frozen=True, kw_only=True):
@@ -561,17 +532,19 @@ class Pick(Question, frozen=True, kw_only=True, tag="name"):
 
     def marked(self, text: str) -> list[str]:
         """Return the name of each choice that a line gives last; empty where it gives none."""
+        known = {
+            mark: (place, name)
+            for place, each in enumerate(self.choices)
+            for key, name in each.names.items()
+            for mark in (key, name)
+        }
         found = [""] * len(self.choices)
-        words = text.replace(",", " ").split()
-        known = {w for each in self.choices for w in (*each.names, *each.names.values())}
-        for mark in (mark for word in words for mark in ((word,) if word in known else word)):
-            for number, each in enumerate(self.choices):
-                name = each.names.get(mark, mark)
-                if name in each.names.values():
-                    found[number] = name
-                    break
-            else:
-                raise ValueError(f"{mark!r} is not an answer; type {self.typed}")
+        for word in text.replace(",", " ").split():
+            for mark in [word] if word in known else word:
+                if mark not in known:
+                    raise ValueError(f"{mark!r} is not an answer; type {self.typed}")
+                place, name = known[mark]
+                found[place] = name
         return found
 
     def missing(self, names: list[str]) -> str:
@@ -591,14 +564,9 @@ class Pick(Question, frozen=True, kw_only=True, tag="name"):
         named = (trial.columns.get(each.of) if each.of else trial.item for each in self.choices)
         return " ".join(filter(None, named))
 
-    def simulate(self, felt: Any, noise: float, random: np.random.Generator) -> str:
-        """Give the names of the picture that is felt most like it."""
-        return felt.named(noise, random)
-
-    def guess(self, trial: Trial, random: np.random.Generator) -> str:
-        """Give any names."""
-        named = ([*each.names.values()] for each in self.choices)
-        return " ".join(names[random.integers(len(names))] for names in named)
+    def guesses(self, trial: Trial) -> Sequence[str]:
+        """Return all combinations of names."""
+        return list(map(" ".join, product(*(each.names.values() for each in self.choices))))
 
 
 class Read(OneOfTwo, frozen=True, kw_only=True, tag="read"):
@@ -608,7 +576,7 @@ class Read(OneOfTwo, frozen=True, kw_only=True, tag="read"):
     asks_of = ("passages",)
     words = ("read", "broken off")
 
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+    def simulate(self, felt: FeltTrial) -> str:
         """Say that it was read."""
         return "read"
 
@@ -646,50 +614,44 @@ class Adjust(Question, frozen=True, kw_only=True, tag="adjust"):
         word = line.strip().casefold()
         if word == "standard":
             return 0
-        return word.count("+") - word.count("-") if word and not set(word) - {"+", "-"} else None
+        return word.count("+") - word.count("-") if word and not set(word) - {*"+-"} else None
 
     def controlled(self, control: Button | Knob, trial: Trial) -> str:
         """Return the line that a button stands for, or a turn of the knob."""
         if isinstance(control, Button):
-            lines = zip(self.buttons, ("-", "+", "equal"), strict=False)
-            return dict(lines).get(control.number, "")
+            return dict(zip(self.buttons, "-+=", strict=False)).get(control.number, "")
         if control.number != self.knob:
             return ""
-        steps = round(control.value * (self.most - self.least) / self.step)
-        steps = round((self.turned(self.least, steps) - trial.values[-1]) / self.step)
+        wanted = self.least + control.value * (self.most - self.least)
+        steps = round((wanted - trial.values[-1]) / self.step)
         return ("+" if steps > 0 else "-") * abs(steps)
 
     def turned(self, value: float, steps: int) -> float:
         """Return a value turned by some steps."""
         return round(min(max(value + steps * self.step, self.least), self.most), 9)
 
-    def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
+    def answers(self, trial: Trial) -> dict[str, str]:
         """Return the value that is shown, if it is equal."""
-        if text.strip().casefold() not in ("equal", "="):
-            raise ValueError(f"{text.strip()!r} is not an answer; type {self.typed}")
-        return f"{trial.values[-1]:.9g}"
+        return dict.fromkeys(("equal", "="), f"{trial.values[-1]:.9g}")
 
-    def simulate(self, felt: FeltTrial, noise: float, random: np.random.Generator) -> str:
+    def simulate(self, felt: FeltTrial) -> str:
         """Turn by as many steps as the two, or it and the usual value, are felt to differ."""
-        values, unit = felt.values()
-        standard = values[0] if len(values) > 1 else unit
-        first, last = noise * unit * random.standard_normal(2)
-        apart = values[-1] + last - (standard + first)
-        steps = round(abs(apart) / self.step) if math.isfinite(apart) else 0
+        *standard, last = felt.drawn()
+        apart = last - (standard[0] if standard else felt.unit)
+        steps = round(abs(apart) / self.step)
         if not steps or felt.turns > (self.most - self.least) / self.step:
             return "equal"
         return ("-" if apart > 0 else "+") * steps
 
-    def guess(self, trial: Trial, random: np.random.Generator) -> str:
+    def guesses(self, trial: Trial) -> Sequence[str]:
         """Leave it as it is."""
-        return trial.presented.split()[-1]
+        return ["equal"]
 
 
 class Free(Question, frozen=True, kw_only=True, tag="free"):
     """Asks for any words."""
 
     typed = "any words"
-    asks_of = ("strings", "pictures", "single", "pairs", "standard")
 
     def parse(self, text: str, trial: Trial, spelling: Spelling) -> str:
         """Return the words."""

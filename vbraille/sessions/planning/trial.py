@@ -10,6 +10,8 @@ from msgspec import Struct, structs
 from vbraille.braille.cells import UNICODE_BLANK
 from vbraille.sessions.planning.values import Look
 
+BLANK = chr(UNICODE_BLANK)
+
 
 class Stimulus(Struct, frozen=True, omit_defaults=True):
     """A string of cells, or a picture, that is felt at once.
@@ -46,7 +48,7 @@ class Stimulus(Struct, frozen=True, omit_defaults=True):
     @property
     def is_blank(self) -> bool:
         """Tell whether there is nothing to feel in what is asked for."""
-        return self.look.contrast == 0 or not set(self.cells) - {chr(UNICODE_BLANK)}
+        return self.look.contrast == 0 or not set(self.cells) - {BLANK}
 
     def at(self, parameter: str, value: float) -> Stimulus:
         """Return the stimulus with another value of a parameter, by which it may be compared."""
@@ -108,7 +110,7 @@ class Trial(Struct, frozen=True):
         """Cells that are asked for; lines of a passage have a blank between them."""
         if self.stimuli[0].value is not None:
             return self.stimuli[0].cells
-        return chr(UNICODE_BLANK).join(stimulus.cells for stimulus in self.stimuli)
+        return BLANK.join(stimulus.cells for stimulus in self.stimuli)
 
     @property
     def values(self) -> list[float]:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vbraille.engine.record import FLAGS, FLOATS, INTS, LINE, Flag
-from vbraille.engine.ticks import recall, replay
+from vbraille.engine.ticks import replay
 from vbraille.render import work
 from vbraille.render.program import Program, nothing
 from vbraille.sessions.planning.protocol import Protocol
@@ -104,7 +104,7 @@ class Replay:
         display = self.protocol.display_model.display
         frames = np.zeros((ticks.size, *display.shape))
         output, held, target = np.zeros((3, *display.shape))
-        at, remembered = np.zeros((2, work.AT))
+        at = np.zeros(work.AT)
         blank = nothing(display)
         ints = np.zeros((ticks.size, len(INTS)), np.int64)
         floats = np.zeros((ticks.size, len(FLOATS)))
@@ -122,7 +122,6 @@ class Replay:
             resting = (ints[first:end, FLAGS] & int(Flag.RESTING)).all()
             program = blank if resting or not line else self._program(line)
             part, into = (ints[first:end], floats[first:end]), frames[first:end]
-            recall(program.numbers, *part, remembered)
             arrays = program.numbers, program.table, program.scratch
             replay(*arrays, *part, at, output, held, target, into)
         return frames

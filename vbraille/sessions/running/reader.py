@@ -16,7 +16,7 @@ from vbraille.sessions.planning.shown import edges_mm, make_shown
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.running.answers import Answers, Asked, Line
 from vbraille.sessions.simulated.feeling import CELL_GAP, LENGTHS, DotPair, FeltTrial
-from vbraille.sessions.simulated.matching import FeltPicture, differences
+from vbraille.sessions.simulated.matching import differences, most_like
 from vbraille.sessions.simulated.observer import Observer
 
 MOST_NOISE = 100.0
@@ -129,7 +129,8 @@ class Simulated(Answers):
             quarters = 0 if lapsed else 3 if is_sure else 1
             return Line(str(scale.least + round(quarters * (scale.most - scale.least) / 4)))
         if lapsed:
-            return Line(self._question.guess(asked.trial, habits))
+            guesses = self._question.guesses(asked.trial)
+            return Line(guesses[habits.integers(len(guesses))])
         if alarmed:
             return Line(self._question.alarm)
         return Line(self._answer(asked, asked.trial, random_of(drawn)))
@@ -168,6 +169,7 @@ class Simulated(Answers):
         start = lead + len(first.before)
         sensed = FeltTrial(
             self._observers[trial.condition],
+            random,
             [*felt[: count - 1], felt[-1]],  # of what was turned only the newest counts
             [len(stimulus.masks(lead)) for stimulus in trial.stimuli],
             slice(start, start + len(first.cells)),
@@ -175,7 +177,7 @@ class Simulated(Answers):
             self._pairs[trial.condition],
             len(felt) - count,
         )
-        return self._question.simulate(sensed, self._noise, random)
+        return self._question.simulate(sensed)
 
 
 class SimulatedNaming(Simulated):
@@ -203,7 +205,7 @@ class SimulatedNaming(Simulated):
             self._thought[condition] = [each.program for each in shown]
         apart = differences(asked.felt()[-1], self._thought[condition])
         names = [self._question.right_answer(each) for each in known]
-        return self._question.simulate(FeltPicture(apart, names), self._noise, random)
+        return most_like(apart, names, self._noise, random)
 
 
 def random_of(text: str) -> np.random.Generator:

@@ -2,33 +2,21 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
 
-from vbraille.sessions.simulated.observer import TIE, Observer
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from vbraille.braille.geometry import Geometry
-    from vbraille.sessions.simulated.skin import FeltFrames
+from vbraille.sessions.simulated.observer import Observer
+from vbraille.sessions.simulated.skin import FeltFrames
 
 WIDTH, GAP, SPACING, CELL_GAP = "dot_width_mm", "dot_gap_mm", "dot_spacing_mm", "cell_gap_mm"
 LENGTHS = (WIDTH, GAP, SPACING, CELL_GAP)
+TIE = 0.04  # difference that counts as equal without noise, in units of the nominal length
 
 
-def nominal_mm(parameter: str, geometry: Geometry) -> float:
-    """Value of a length that the reader was told, by the nominal distances."""
-    if parameter == GAP:
-        return geometry.dot_spacing_mm - geometry.dot_width_mm
-    return getattr(geometry, parameter)
-
-
-@dataclass(frozen=True, slots=True)
-class DotPair:
+class DotPair(NamedTuple):
     """Two neighbouring dot columns of a line, whose distance tells a length.
 
     Parameters
@@ -49,38 +37,6 @@ class DotPair:
     cells: int
 
 
-def felt_mm(
-    observer: Observer, parameter: str, exploration: FeltFrames, pair: DotPair | None
-) -> float:
-    """Length that is felt of a stimulus; NaN if it is not felt."""
-    if parameter in (WIDTH, GAP):
-        return observer.lengths_mm(exploration)[(WIDTH, GAP).index(parameter)]
-    dots_mm = observer.dots_mm(exploration)
-    if pair is None or len(dots_mm) != pair.columns:
-        return math.nan
-    distance_mm = dots_mm[pair.first + 1, 0] - dots_mm[pair.first, 0]
-    more_mm = (distance_mm - pair.distance_mm) / max(pair.cells, 1)
-    return float(nominal_mm(parameter, observer.geometry) + more_mm)
-
-
-def nearer(
-    lengths: Sequence[float], nominal: float, noise: float, random: np.random.Generator
-) -> int:
-    """Choose the one of some lengths that is felt nearest to a length, from 1; the first of a tie.
-
-    Noise is in units of that length, and so is what counts as equal without noise.
-    """
-    drawn = noise * nominal * random.standard_normal(len(lengths))
-    off = [
-        math.inf if math.isnan(felt) else abs(felt + more - nominal)
-        for felt, more in zip(lengths, drawn, strict=True)
-    ]
-    tie, best = 0.0 if noise else TIE * nominal, 0
-    for place, distance in enumerate(off):
-        best = place if distance < off[best] - tie else best
-    return best + 1
-
-
 @dataclass(frozen=True, slots=True)
 class FeltTrial:
     """A trial as the simulated reader feels it.
@@ -89,6 +45,8 @@ class FeltTrial:
     ----------
     observer
         Reader of the trial's condition.
+    random
+        Generator of the noise.
     felt
         Frames and places of each stimulus.
     places
@@ -104,44 +62,70 @@ class FeltTrial:
     """
 
     observer: Observer
+    random: np.random.Generator
     felt: Sequence[FeltFrames]
     places: Sequence[int]
     asked: slice
     parameter: str
-    pair: DotPair | None
+    pair: DotPair | None = None
     turns: int = 0
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation of the noise, in units of values."""
+        return self.observer.noise
 
     @property
     def by_length(self) -> bool:
         """True if stimuli differ in a length."""
         return self.parameter in LENGTHS
 
-    def cells(self, random: np.random.Generator) -> list[int | None]:
+    @property
+    def unit(self) -> float:
+        """Unit of values: the length that the reader was told, in mm; 1 for strengths."""
+        geometry = self.observer.geometry
+        if self.parameter == GAP:
+            return geometry.dot_spacing_mm - geometry.dot_width_mm
+        return getattr(geometry, self.parameter) if self.by_length else 1.0
+
+    def jitter(self) -> float:
+        """Draw noise, in units of values."""
+        return self.noise * float(self.random.standard_normal())
+
+    def cells(self) -> list[int | None]:
         """Dot masks of the cells asked for; None for a cell that was not read."""
-        return self.observer.read(self.felt[0], self.places[0], random)[self.asked]
+        return self.observer.read(self.felt[0], self.places[0], self.random)[self.asked]
 
     def strength(self, stimulus: int = 0) -> float:
         """Strength of the strongest dot asked for, in units of E₀; 0 if the hand was on none."""
         evidence = self.observer.felt(self.felt[stimulus], self.places[stimulus])[self.asked]
-        return 0.0 if np.isnan(evidence).all() else float(np.nanmax(evidence))
+        return float(np.nan_to_num(evidence).max())
 
-    def values(self) -> tuple[list[float], float]:
-        """Give the value of each stimulus, NaN for one not felt, and the unit of noise.
+    def values(self) -> list[float]:
+        """Lengths of the stimuli in mm, or their strengths in units of E₀; 0 of one not felt."""
+        if self.by_length:
+            return list(map(self._length_mm, self.felt))
+        return [self.strength(place) for place in range(len(self.felt))]
 
-        Values are lengths in mm, and the unit is then the nominal length; or strengths in units of
-        E₀, and the unit is 1.
-        """
-        if not self.by_length:
-            return [self.strength(place) for place in range(len(self.felt))], 1.0
-        lengths = [felt_mm(self.observer, self.parameter, each, self.pair) for each in self.felt]
-        return lengths, nominal_mm(self.parameter, self.observer.geometry)
+    def drawn(self) -> np.ndarray:
+        """Values with noise."""
+        noise = self.noise * self.random.standard_normal(len(self.felt))
+        return self.values() + self.unit * noise
 
     def share(self) -> float:
-        """Value of the last stimulus as a share of the first; of a single one, of the unit.
+        """Value of the last stimulus as a share of the first, or of a single one of the unit."""
+        *first, last = self.values()
+        standard = first[0] if first else self.unit
+        return last / standard if standard > 0 else 0.0
 
-        It is 0 if one of them was not felt.
-        """
-        values, unit = self.values()
-        standard = unit if len(values) == 1 else values[0]
-        share = values[-1] / standard if standard > 0 else 0.0
-        return 0.0 if math.isnan(share) else share
+    def _length_mm(self, exploration: FeltFrames) -> float:
+        dots_mm, pair = self.observer.dots_mm(exploration), self.pair
+        if self.parameter == WIDTH and len(dots_mm):
+            return float(dots_mm[0, 1] - dots_mm[0, 0])
+        if self.parameter == GAP and len(dots_mm) > 1:
+            return float(dots_mm[1, 0] - dots_mm[0, 1])
+        if pair is None or len(dots_mm) != pair.columns:
+            return 0.0
+        distance_mm = dots_mm[pair.first + 1, 0] - dots_mm[pair.first, 0]
+        more_mm = (distance_mm - pair.distance_mm) / max(pair.cells, 1)
+        return float(self.unit + more_mm)

@@ -16,7 +16,7 @@ anybody, and it claims nothing about people; it is for trying protocols out.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,23 +58,11 @@ def _impression(frames: NDArray[np.floating]) -> NDArray[np.float64]:
     return np.stack([frames.mean(axis=1), frames.std(axis=1)])
 
 
-class FeltPicture(NamedTuple):
-    """A trial with a picture as the simulated person feels it.
-
-    Parameters
-    ----------
-    apart : float64[pictures]
-        How much each known picture differs from what was felt.
-    names
-        Their names.
-    """
-
-    apart: NDArray[np.float64]
-    names: Sequence[str]
-
-    def named(self, noise: float, random: np.random.Generator) -> str:
-        """Return the name of the picture that differs least from what was felt, with noise."""
-        drawn = random.standard_normal(self.apart.size)
-        if np.ptp(self.apart) > 0:
-            drawn = self.apart / self.apart.mean() + noise * drawn
-        return self.names[int(drawn.argmin())]
+def most_like(
+    apart: NDArray[np.float64], names: Sequence[str], noise: float, random: np.random.Generator
+) -> str:
+    """Return the name of the picture that differs least from what was felt, with noise."""
+    drawn = random.standard_normal(apart.size)
+    if np.ptp(apart) > 0:
+        drawn = apart / apart.mean() + noise * drawn
+    return names[int(drawn.argmin())]

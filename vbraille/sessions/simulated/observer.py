@@ -71,7 +71,6 @@ PLACE_MM = 0.005
 LEAST_FELT = 1e-3  # least evidence, in units of E₀, that counts as felt
 LEAST_SWING = 1e-4  # least swing, as a share of the largest; at rest it is exactly 0
 APART = 0.1  # gap that parts two dots, in units of the nominal dot width
-TIE = 0.04  # difference that counts as equal without noise, in units of the nominal length
 
 
 class Observer:
@@ -198,14 +197,6 @@ class Observer:
         apart = np.flatnonzero(gaps_mm > APART * self.geometry.dot_width_mm)
         firsts, lasts = np.r_[0, apart + 1], np.r_[apart, at.size - 1]
         return np.column_stack((starts_mm[firsts], ends_mm[lasts]))
-
-    def lengths_mm(self, exploration: FeltFrames) -> tuple[float, float]:
-        """Width of the first dot of a line, and gap to the next dot; NaN where one is missing."""
-        dots_mm = self.dots_mm(exploration)
-        if not len(dots_mm):
-            return math.nan, math.nan
-        width_mm = float(dots_mm[0, 1] - dots_mm[0, 0])
-        return width_mm, float(dots_mm[1, 0] - dots_mm[0, 1]) if len(dots_mm) > 1 else math.nan
 
     def _near(self, exploration: FeltFrames, right_mm: float) -> FeltFrames:
         """Ticks at which the array is over a line, or at most a dot's width beside it."""
