@@ -5,9 +5,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from dataclasses import asdict, dataclass, replace
-from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple, Self
 
@@ -32,9 +32,9 @@ FORMAT = 3
 CHUNK_FRAMES = 1024
 _CHUNK_LINES = 64
 _TEXT: Final = h5py.string_dtype()
-_AXES: Final = ("column", "row")
 _MAPPINGS: Final = MAPPINGS | {m.name: m for m in map(single_row, (1, 2, 3))}
 NUMBERS: Final = ("t_s", "x_mm", "y_mm", "theta_rad", "line", "part")
+_SCENE: Final = ("title", "description", "width_mm", "height_mm")
 # What reading a file raises that is HDF5, but not as this module writes it.
 UNLIKE: Final = (
     OSError, KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError,
@@ -96,105 +96,92 @@ class Recorder:
 
     def __init__(self, file: NewFile, display: Display, width: int) -> None:
         self._file = file
-        rows, columns = display.shape
-
-        def growing(name: str, dtype: str, *shape: int, chunk: int = CHUNK_FRAMES) -> h5py.Dataset:
+        kinds = dict.fromkeys(NUMBERS, ("f8",)) | {
+            "line": ("i8",),
+            "part": ("i8",),
+            "frames": ("f4", *display.shape),
+            "page/cells": ("u1", width),
+            "page/length": ("i8",),
+            "page/sources": ("i4", width, 2),
+            "page/text": (_TEXT,),
+        }
+        self._datasets: dict[str, h5py.Dataset] = {}
+        for name, (kind, *shape) in kinds.items():
+            chunk = _CHUNK_LINES if name.startswith("page/") else CHUNK_FRAMES
             # The filters that every HDF5 library has. Bytes of frames are shared out by their
             # places in a number (shuffle) to no advantage; those of times and places are.
-            return file.create_dataset(
+            self._datasets[name] = file.create_dataset(
                 name,
                 (0, *shape),
-                dtype,
+                kind,
                 maxshape=(None, *shape),
                 chunks=(chunk, *shape),
                 compression="gzip",
                 compression_opts=1,
                 shuffle=name != "frames",
             )
-
-        self._time = growing("t_s", "f8")
-        self._pose = [growing(name, "f8") for name in ("x_mm", "y_mm", "theta_rad")]
-        self._line = growing("line", "i8")
-        self._part = growing("part", "i8")
-        self._frames = growing("frames", "f4", rows, columns)
-        self._cells = growing("page/cells", "u1", width, chunk=_CHUNK_LINES)
-        self._length = growing("page/length", "i8", chunk=_CHUNK_LINES)
-        self._sources = growing("page/sources", "i4", width, 2, chunk=_CHUNK_LINES)
-        self._texts = file.create_dataset(
-            "page/text", (0,), _TEXT, maxshape=(None,), chunks=(_CHUNK_LINES,)
-        )
         file.attrs["column_offset_mm"] = display.column_offsets_mm()
         file.attrs["row_offset_mm"] = display.row_offsets_mm()
         file.attrs["vbraille_version"] = __version__
         file.attrs["format"] = FORMAT
 
     def describe(
-        self, *, model: Model, rate_hz: float, first_line: int, source: str, sha256: str
+        self,
+        model: Model,
+        *,
+        rate_hz: float,
+        source: str,
+        sha256: str,
+        first_line: int = 1,
+        scene: SceneRecorded | None = None,
+        path: str = "",
     ) -> None:
-        """Write what was rendered, and how, as attributes."""
+        """Write what was rendered, and how.
+
+        Parameters
+        ----------
+        model
+            Display, and the style of the braille.
+        rate_hz
+            Frames a second.
+        source, sha256
+            Name and SHA-256 of the file that was rendered.
+        first_line
+            Number in the source of the first line.
+        scene, path
+            Tactile picture that was rendered, which is the recording's one line, without cells; and
+            words for the path of the array. None if lines were.
+        """
         self._file.attrs.update(
             model=model.name,
-            mapping=model.style.mapping.name,
+            mapping=model.style.mapping.name if scene is None else "",
+            display=json.dumps(asdict(replace(model.display, rate_hz=rate_hz))),
             geometry=json.dumps(asdict(model.style.geometry)),
             tuning=json.dumps(asdict(model.style.tuning)),
             rate_hz=rate_hz,
             first_line=first_line,
             source=source,
             source_sha256=sha256,
-            calibration=json.dumps(None),
         )
-
-    def describe_scene(
-        self,
-        scene: SceneRecorded,
-        *,
-        model: Model,
-        rate_hz: float,
-        source: str,
-        sha256: str,
-        path: str,
-    ) -> None:
-        """Write which tactile picture was rendered; it is the recording's one line, without cells.
-
-        Parameters
-        ----------
-        scene
-            The picture.
-        model
-            Display, and the style of the braille in the picture.
-        rate_hz
-            Frames a second.
-        source, sha256
-            Name and SHA-256 of the picture's file.
-        path
-            Words for the path of the array.
-        """
-        self.add_line(np.zeros(0, np.uint8))
-        for name, written in (("scene/text", scene.text), ("scene/map", scene.map_png)):
-            self._file.create_dataset(name, data=np.frombuffer(written, np.uint8))
-        self._file["scene"].attrs.update(
-            title=scene.title,
-            description=scene.description,
-            width_mm=scene.width_mm,
-            height_mm=scene.height_mm,
-            path=path,
-        )
-        self.describe(model=model, rate_hz=rate_hz, first_line=1, source=source, sha256=sha256)
-        self._file.attrs["mapping"] = ""  # which belongs to lines
+        if scene is not None:
+            self.add_line(np.zeros(0, np.uint8))
+            for name, written in (("scene/text", scene.text), ("scene/map", scene.map_png)):
+                self._file.create_dataset(name, data=np.frombuffer(written, np.uint8))
+            told = {name: getattr(scene, name) for name in _SCENE}
+            self._file["scene"].attrs.update(told, path=path)
 
     def add_line(self, masks: NDArray[np.uint8], printed: Print | None = None) -> int:
         """Append a line of the page with its print, and return its row in ``page/cells``."""
-        row = self._length.shape[0]
-        self._sources.resize(row + 1, 0)
-        self._texts.resize(row + 1, 0)
+        datasets = self._datasets
+        row = datasets["page/length"].shape[0]
+        for name in ("page/cells", "page/length", "page/sources", "page/text"):
+            datasets[name].resize(row + 1, 0)
+        datasets["page/length"][row] = masks.size
+        datasets["page/cells"][row, : masks.size] = masks
         if printed is not None:
             # A lone surrogate, as of a damaged book, has no bytes.
-            self._texts[row] = printed.text.encode("utf-8", "replace")
-            self._sources[row, : masks.size] = printed.sources
-        self._cells.resize(row + 1, 0)
-        self._cells[row, : masks.size] = masks
-        self._length.resize(row + 1, 0)
-        self._length[row] = masks.size
+            datasets["page/text"][row] = printed.text.encode("utf-8", "replace")
+            datasets["page/sources"][row, : masks.size] = printed.sources
         return row
 
     def add_frames(
@@ -223,17 +210,12 @@ class Recorder:
         part : int64[n]
             Which part of a picture that has several was under the array.
         """
-        before = self._time.shape[0]
-        after = before + t_s.size
-        for dataset, values in (
-            (self._time, t_s),
-            *zip(self._pose, (x_mm, y_mm, theta_rad), strict=True),
-            (self._line, line),
-            (self._part, part),
-            (self._frames, frames),
-        ):
-            dataset.resize(after, 0)
-            dataset[before:after] = values
+        before = self._datasets["t_s"].shape[0]
+        rows = (t_s, x_mm, y_mm, theta_rad, line, part, frames)
+        for name, values in zip((*NUMBERS, "frames"), rows, strict=True):
+            dataset = self._datasets[name]
+            dataset.resize(before + t_s.size, 0)
+            dataset[before:] = values
         self._file.check()
 
 
@@ -355,16 +337,12 @@ class Recording:
         rate_hz = self.model.display.rate_hz
         with new_file(path, replace=replace) as file:
             recorder = Recorder(file, self.model.display, max(1, *map(len, self.cells), 1))
-            if self.scene is not None:
-                recorder.describe_scene(
-                    self.scene, model=self.model, rate_hz=rate_hz, source=self.source,
-                    sha256=sha256(self.scene.text).hexdigest(), path="",
-                )  # fmt: skip
-            else:
-                recorder.describe(
-                    model=self.model, rate_hz=rate_hz, first_line=self.first_line,
-                    source=self.source, sha256="",
-                )  # fmt: skip
+            digest = "" if self.scene is None else hashlib.sha256(self.scene.text).hexdigest()
+            recorder.describe(
+                self.model, rate_hz=rate_hz, source=self.source, sha256=digest,
+                first_line=self.first_line, scene=self.scene,
+            )  # fmt: skip
+            if self.scene is None:
                 for row, masks in enumerate(self.cells):
                     recorder.add_line(masks, self.prints[row] if self.prints else None)
             recorder.add_frames(
@@ -387,31 +365,20 @@ def model_in(file: h5py.File) -> Model:
     ValueError
         If the display is of another shape than the frames.
     """
-    columns_mm, rows_mm = (np.asarray(file.attrs[f"{n}_offset_mm"], float) for n in _AXES)
-    if (rows_mm.size, columns_mm.size) != dataset_in(file, "frames").shape[1:]:
+    told = {name: json.loads(str(file.attrs[name])) for name in ("display", "geometry", "tuning")}
+    display = Display(**told["display"])
+    if display.shape != dataset_in(file, "frames").shape[1:]:
         raise ValueError("the frames are of another display")
-    name = str(file.attrs.get("model", "not known"))
-    model = MODELS.get(name)
-    geometry = Geometry(**json.loads(str(file.attrs.get("geometry", "{}"))))
-    display = Display(
-        name,
-        rows_mm.size,
-        columns_mm.size,
-        float(columns_mm[1]) if columns_mm.size > 1 else 1.0,
-        float(rows_mm[1]) if rows_mm.size > 1 else 1.0,
-        rest_side="right" if model is None else model.display.rest_side,
-        travel_mm=geometry.travel_mm,
-        rate_hz=float(np.asarray(file.attrs["rate_hz"])),
-    )
-    mapping = _MAPPINGS.get(str(file.attrs.get("mapping", "")))
+    name = str(file.attrs["model"])
+    model, mapping = MODELS.get(name), _MAPPINGS.get(str(file.attrs["mapping"]))
     if model is None or (mapping is None and "scene" not in file):
         return replace(model_of(display), name="", title=name, display=display)
     style = model.style
     if mapping is not None:
-        tuning = Tuning(**json.loads(str(file.attrs["tuning"])))
+        geometry, tuning = Geometry(**told["geometry"]), Tuning(**told["tuning"])
         style = replace(style, mapping=mapping, geometry=geometry, tuning=tuning)
         style.rows_on(display)
-    return replace(model, display=replace(display, name=model.title), style=style)
+    return replace(model, display=display, style=style)
 
 
 def scene_of(file: h5py.File) -> SceneRecorded | None:
@@ -425,25 +392,18 @@ def scene_of(file: h5py.File) -> SceneRecorded | None:
     check_format(file)
     if "scene" not in file:
         return None
-    text, drawn = (_bytes(file, f"scene/{name}") for name in ("text", "map"))
-    told = file["scene"].attrs
+    text, drawn = (dataset_in(file, name)[:].tobytes() for name in ("scene/text", "scene/map"))
+    title, description, width_mm, height_mm = (np.asarray(file["scene"].attrs[n]) for n in _SCENE)
     return SceneRecorded(
-        text,
-        str(told["title"]),
-        str(told["description"]),
-        float(np.asarray(told["width_mm"])),
-        float(np.asarray(told["height_mm"])),
-        drawn,
+        text, str(title), str(description), float(width_mm), float(height_mm), drawn
     )
 
 
 def print_in(file: h5py.File, row: int, length: int) -> Print:
     """Read the print of a line: a row of ``page/cells``, and its number of cells.
 
-    A recording of braille, and one that was written before recordings had their print, has none.
+    A recording of braille has none.
     """
-    if "page/text" not in file:
-        return Print("", np.zeros((length, 2), np.int32))
     texts, sources = file["page/text"], dataset_in(file, "page/sources")
     assert isinstance(texts, h5py.Dataset)
     text = texts[row]
@@ -483,9 +443,3 @@ def dataset_in(file: h5py.File, name: str) -> h5py.Dataset:
     if not isinstance(found, h5py.Dataset) or found.dtype.kind not in "iuf":
         raise TypeError
     return found
-
-
-def _bytes(file: h5py.File, name: str) -> bytes:
-    dataset = file[name]
-    assert isinstance(dataset, h5py.Dataset)
-    return dataset[:].tobytes()

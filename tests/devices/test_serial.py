@@ -16,7 +16,7 @@ from vbraille.engine.checkup import taking_parts
 from vbraille.errors import DeviceError, InputError
 from vbraille.render import MODELS
 from vbraille.simulation.controller import Controller, info_of
-from vbraille.simulation.pty import Link, Port
+from vbraille.simulation.pty import Port
 from vbraille.simulation.simulator import Faults, Simulator
 from vbraille.simulation.specs import parse_hand
 from vbraille.testing import simulated_controller
@@ -77,7 +77,7 @@ def test_a_board_that_starts_when_its_port_is_opened_is_waited_for():
 
 
 def test_a_device_that_is_unplugged_is_found_again(tmp_path):
-    port = Port(Link(str(tmp_path / "port")))
+    port = Port(str(tmp_path / "port"))
     simulator = Simulator(
         VBD, parse_hand("sweep:60"), port, say=lambda _: None, faults=Faults(unplug_every_s=0.6)
     )

@@ -130,7 +130,7 @@ class Reading:
         self.tick()
         self.obey()
         self.view.__enter__()
-        self.view.watch(self.ring.reader())
+        self.view.watch(self.ring.another())
         self._thread.start()
         return self
 

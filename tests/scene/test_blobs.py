@@ -7,11 +7,10 @@ import pytest
 from PIL import Image as Pillow
 
 from vbraille.errors import InputError
-from vbraille.scene.blobs import dots_of
-from vbraille.scene.patterns import Dots, Group, ImageDots
+from vbraille.scene.images import dots_of
+from vbraille.scene.patterns import Dots, DotStyle, Group, ImageDots, Vibration
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import DotStyle, Vibration
 
 
 def saved(folder, values):
@@ -103,7 +102,7 @@ BAD = {
     "nothing in its image is above": (np.zeros((5, 5)), {}),
     "smaller than a cell": (np.ones((5, 5)), {"cell_mm": (50.0, 50.0)}),
     "has 22500 blobs": (np.tile([[255, 0], [0, 0]], (150, 150)), {}),
-    "has dots too far away: centers, number 1, x is 10020 mm": (
+    "has centers, number 1, x is 10020 mm": (
         np.full((9, 9), 255),
         {"place_mm": (10_000.0, 0.0)},
     ),

@@ -39,7 +39,7 @@ class Person:
         pattern, line = self.script[0]
         for number, sentence in enumerate(self.said[self.seen :], self.seen):
             if re.search(pattern, sentence):
-                self.seen = number + 1
+                self.seen, self.waited = number + 1, 0
                 self.script.pop(0)
                 return Press() if line is KEY else Line(line)
         time.sleep(wait_s)

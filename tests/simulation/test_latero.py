@@ -86,13 +86,6 @@ def test_the_authors_reset_finds_the_same_offsets():
         assert (found - offset + 1) % 2**32 <= 2
 
 
-def test_registers_are_read_and_written(client):
-    assert client.raw(0x22, 0x18, 0xBEEF)[2:] == (0x83, 0, 0x22, 0x18, 0xBEEF)
-    assert client.raw(0x21, 0x18)[4:] == (0x21, 0x18, 0xBEEF)
-    assert client.raw(0x11, 0x18)[4:] == (0x11, 0x18, 0)  # the other board's
-    assert client.raw(0x21, 0x10)[6] == 0x0060
-
-
 def test_motor_power_is_switched_by_a_register(latero, client):
     status = client.full([150] * 64)[5]
     assert client.raw(0x11, 0x00)[6] & ~1 == status & ~1

@@ -135,11 +135,10 @@ class Cells:
         ValueError
             If a character is not in U+2800-28FF.
         """
-        codes = np.frombuffer(text.encode("utf-32-le", "surrogatepass"), "<u4")
-        wrong = np.flatnonzero((codes < UNICODE_BLANK) | (codes >= UNICODE_BLANK + _PATTERNS))
-        if wrong.size:
-            raise ValueError(f"{text[wrong[0]]!r} is not a braille pattern (U+2800 to U+28FF)")
-        return cls.bare((codes - UNICODE_BLANK).astype(np.uint8))
+        wrong = [sign for sign in text if not 0 <= ord(sign) - UNICODE_BLANK < _PATTERNS]
+        if wrong:
+            raise ValueError(f"{wrong[0]!r} is not a braille pattern (U+2800 to U+28FF)")
+        return cls.bare(np.array([ord(sign) - UNICODE_BLANK for sign in text], np.uint8))
 
     def to_brf(self) -> str:
         """North American ASCII braille, one upper-case character a cell.
@@ -149,11 +148,12 @@ class Cells:
         ValueError
             If a cell has dot 7 or 8, which BRF cannot write.
         """
-        wrong = np.flatnonzero(self.masks > 0x3F)
-        if wrong.size:
-            dots = _DOTS[self.masks[wrong[0]]]
+        masks = self.masks.tolist()
+        wrong = [mask for mask in masks if mask >= len(_BRF)]
+        if wrong:
+            dots = _DOTS[wrong[0]]
             raise ValueError(f"BRF has six dots and cannot write the cell with dots {dots}")
-        return "".join(map(_BRF.__getitem__, self.masks.tolist()))
+        return "".join(map(_BRF.__getitem__, masks))
 
     @classmethod
     def from_brf(cls, text: str) -> Cells:

@@ -7,6 +7,7 @@ import string
 from typing import TYPE_CHECKING
 
 from vbraille.braille.cells import UNICODE_BLANK, Cells, dots_of
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -43,10 +44,8 @@ def to_answer(masks: Iterable[int | None]) -> str:
 def name_dots(mask: int) -> str:
     """Dots of a mask as in a sentence: "dot 1", "dots 1 and 4", "no dots"."""
     dots = list(map(str, dots_of(mask)))
-    if not dots:
-        return "no dots"
-    if len(dots) == 1:
-        return f"dot {dots[0]}"
+    if len(dots) < 2:
+        return f"dot {dots[0]}" if dots else "no dots"
     return f"dots {', '.join(dots[:-1])} and {dots[-1]}"
 
 
@@ -94,15 +93,11 @@ def spell_string(text: str, keys: dict[str, int]) -> tuple[int, ...]:
         If a character is something else.
     """
     for character in text:
-        if character.isspace():
+        if character.isspace() or _DOT_NUMBERS.fullmatch(character):
             raise ValueError(
-                f"{_shorten(text)} has a blank, which may be meant as a cell or as nothing; write "
-                f"a blank cell as Unicode braille (U+2800) or by a key of [keys], or leave it out"
-            )
-        if _DOT_NUMBERS.fullmatch(character):
-            raise ValueError(
-                f"{_shorten(text)} has {character!r}, which may be meant as dots or as what it "
-                f"is; write each cell as a letter, a key of [keys] or Unicode braille"
+                f"{_shorten(text)} has {character!r}, which may be meant as a cell, as dots or as "
+                f"nothing; write each cell as a letter, a key of [keys] or Unicode braille (U+2800 "
+                f"for a blank one)"
             )
     return tuple(_by_character(character, text, keys) for character in text)
 
@@ -129,7 +124,7 @@ def parse_answer(text: str, *, places: int, keys: dict[str, int], shown_dots: in
         missing or too many.
     """
     if not text.strip():
-        raise ValueError(f"nothing was typed; type {_count(places)}, or ? if none was read")
+        raise ValueError(f"nothing was typed; type {count(places, 'place')}, or ? if none was read")
     if text.strip() == UNREAD:
         return UNREAD * places
     typed = _cells(text, {UNREAD: UNREAD_MASK, **_either_case(keys)})
@@ -141,10 +136,13 @@ def parse_answer(text: str, *, places: int, keys: dict[str, int], shown_dots: in
             )
     if len(typed) < places:
         raise ValueError(
-            f"only {len(typed)} of {_count(places)} typed; type all, with ? for what was not read"
+            f"only {len(typed)} of {count(places, 'place')} typed; "
+            f"type all, with ? for what was not read"
         )
     if len(typed) > places:
-        raise ValueError(f"{_count(len(typed))} typed, and {places} asked for; type no more")
+        raise ValueError(
+            f"{count(len(typed), 'place')} typed, and {places} asked for; type no more"
+        )
     return to_answer(mask for _, mask in typed)
 
 
@@ -189,9 +187,8 @@ def _say(place: str, keys: dict[str, int]) -> str:
 
 def _either_case(keys: dict[str, int]) -> dict[str, int]:
     """Spellings in which answers may be typed: letters and keys in either case; keys win."""
-    cells = LETTERS | {letter.upper(): mask for letter, mask in LETTERS.items()}
-    cells |= {key.upper(): mask for key, mask in keys.items() if len(key.upper()) == 1}
-    return cells | keys
+    cells = LETTERS | keys
+    return {key.upper(): mask for key, mask in cells.items() if len(key.upper()) == 1} | cells
 
 
 def _cells(text: str, keys: dict[str, int]) -> list[tuple[str, int]]:
@@ -209,7 +206,7 @@ def _by_dots(word: str) -> int:
     dots = word.replace("-", "")
     if len(set(dots)) < len(dots):  # two cells without the space between them
         raise ValueError(
-            f"{_quote(word)} has a dot twice; put a space between the dot numbers of two cells"
+            f"{_shorten(word)} has a dot twice; put a space between the dot numbers of two cells"
         )
     return int(Cells.from_dots(word).masks[0])
 
@@ -221,21 +218,13 @@ def _by_character(character: str, word: str, keys: dict[str, int]) -> int:
     if UNICODE_BLANK <= ord(character) <= UNICODE_BLANK + 0xFF:
         return ord(character) - UNICODE_BLANK
     if _DOT_NUMBERS.fullmatch(character):
-        raise ValueError(f"{_quote(word)} is no cell; put spaces around dot numbers")
+        raise ValueError(f"{_shorten(word)} is no cell; put spaces around dot numbers")
     raise ValueError(
-        f"{_quote(character)} is no cell; a cell is a letter a to z, a key of the protocol, "
+        f"{_shorten(character)} is no cell; a cell is a letter a to z, a key of the protocol, "
         f"a Unicode braille character or dot numbers such as 1-4"
     )
 
 
-def _count(number: int) -> str:
-    return "1 place" if number == 1 else f"{number} places"
-
-
-def _quote(text: str) -> str:
-    """Typed text, as it can be said in a sentence."""
-    return _shorten(text.strip())
-
-
 def _shorten(text: str) -> str:
+    """Typed text, as it can be said in a sentence."""
     return repr(text if len(text) <= _LONGEST_QUOTE else f"{text[:_LONGEST_QUOTE]}…")

@@ -25,8 +25,7 @@ class Placing(IntEnum):
     """Act that a device waits for before it knows where its carriage is."""
 
     DONE = 0  # nothing: it knows
-    MARK = 1  # the reader moves the carriage over the encoder's mark
-    STOP = 2  # the reader moves it to the left stop and presses a key: `Device.set_zero`
+    STOP = 1  # the reader moves it to the left stop and presses a key: `Device.set_zero`
 
 
 class Event(msgspec.Struct, frozen=True, tag=True):
@@ -117,6 +116,15 @@ class Button(Event, frozen=True):
     number: int
     pressed: bool
     at_ns: int | None = None
+
+
+def moved(before: int, now: int, count: int, at_ns: int) -> list[Event]:
+    """Tell of the buttons whose bits differ, of the first so many."""
+    return [
+        Button(bit + 1, pressed=bool(now >> bit & 1), at_ns=at_ns)
+        for bit in range(count)
+        if (before ^ now) >> bit & 1
+    ]
 
 
 class Knob(Event, frozen=True):
@@ -267,14 +275,12 @@ def placing_sentence(placing: Placing, display: Display, *, press: str = "press 
     press
         How the reader says that the carriage is there.
     """
+    if placing is Placing.DONE:
+        return "place: known"
     left = "left to the stop"
     if display.height_mm:
         left = f"to {shown_place(display)}, with the array straight"
-    return {
-        Placing.DONE: "place: known",
-        Placing.MARK: "place: move the carriage over its mark",
-        Placing.STOP: f"place: move {left}, then {press}",
-    }[placing]
+    return f"place: move {left}, then {press}"
 
 
 class Throttle:

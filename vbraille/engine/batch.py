@@ -62,7 +62,7 @@ class BatchEngine(LocalEngine):
     def poll(self) -> NDArray[np.void]:
         """Do some ticks; return their records, `vbraille.engine.record.tick_dtype`[n]."""
         device, ring = self.device, self.ring
-        due_ns = (self.tally.ticks + np.arange(self.poll_ticks)) * self._period_ns
+        due_ns = (int(self.now["tick"]) + np.arange(self.poll_ticks)) * self._period_ns
         self.clock.sleep_until_ns(int(due_ns[0]))
         due_ns = due_ns[: device.until_done(due_ns)]
         poses = np.zeros((due_ns.size, 4))

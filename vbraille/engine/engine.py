@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.devices.events import AtStart, FeltAgain, LineRead, Placing, Turned, Unfelt
-from vbraille.engine.record import Flag
+from vbraille.engine.record import Flag, Tally
 from vbraille.render.braille.style import MOST_TILT_RAD
 
 if TYPE_CHECKING:
@@ -24,22 +24,19 @@ if TYPE_CHECKING:
 HOME_MM = 1.0
 # Plain numbers, since numpy, when it reads an enumeration, can swallow what a signal raises.
 _TURNED, _UNFELT, _PAUSED = int(Flag.TURNED), int(Flag.UNFELT), int(Flag.PAUSED)
-_MARK, _STOP = int(Flag.MARK), int(Flag.STOP)
-AWAY = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD | Flag.TURNED)
+_STOP = int(Flag.STOP)
+AWAY = int(Flag.SILENT | Flag.STOP | Flag.HELD | Flag.TURNED)
 WHY = {
     int(Flag.SILENT): "the device is silent",
-    _MARK | _STOP: "the device does not know where its carriage is",
+    _STOP: "the device does not know where its carriage is",
     int(Flag.HELD | Flag.RESTED): "the array went to rest by itself",
     _TURNED: "the array is turned too far",
 }
 
 
 def placing_of(tick: np.void | None) -> Placing:
-    """Tell how the device was waiting to be shown its place, from a record."""
-    flags = 0 if tick is None else int(tick["flags"])
-    if flags & _STOP:
-        return Placing.STOP
-    return Placing.MARK if flags & _MARK else Placing.DONE
+    """Tell whether the device was waiting to be shown its place, from a record."""
+    return Placing(tick is not None and bool(tick["flags"] & _STOP))
 
 
 class EndOfLine:
@@ -95,11 +92,21 @@ class Watcher:
         self._found: list[Event] = []
 
     @property
+    def tally(self) -> Tally:
+        """Counts of what the loop has done since the last start, up to the last poll."""
+        return Tally() if self.newest is None else Tally.of(self.newest)
+
+    @property
     def x_mm(self) -> float | None:
         """Place of the array's centre along x in the newest record; None if it is not known."""
         if self.newest is None or math.isnan(self.newest["x_mm"]):
             return None
         return float(self.newest["x_mm"])
+
+    def wait_for(self, line: int, end_mm: float | None, display: Display) -> None:
+        """Find the end of a line, whose last dot ends there; None for what ends nowhere."""
+        self._line = line
+        self._end = None if end_mm is None else EndOfLine(display.span_mm, end_mm)
 
     def watch(self, ticks: NDArray[np.void], display: Display) -> None:
         """Look at records, oldest first."""

@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any, Final, Self
 from vbraille.devices.events import Back, Stalled, from_json
 from vbraille.devices.registry import find_driver
 from vbraille.display import Display
-from vbraille.engine.engine import EndOfLine, Watcher
-from vbraille.engine.record import RingReader, Tally
+from vbraille.engine.engine import Watcher
+from vbraille.engine.record import RingReader
 from vbraille.errors import DeviceError, InputError, VbrailleError
 from vbraille.files import open_memory, settings_path
 from vbraille.logs import kept
@@ -192,11 +192,6 @@ class Host(Watcher):
         return self._display
 
     @property
-    def tally(self) -> Tally:
-        """Counts of what the loop has done since the last start, up to the last poll."""
-        return Tally() if self.newest is None else Tally.of(self.newest)
-
-    @property
     def paused(self) -> bool:
         """Tell whether the array is to rest."""
         return self._paused
@@ -235,8 +230,8 @@ class Host(Watcher):
             If the picture was compiled for another array.
         """
         picture.check_shape(self.display.shape)
-        self._shown, self._line = (picture, line, end_mm), line
-        self._end = None if end_mm is None else EndOfLine(self.display.span_mm, end_mm)
+        self._shown = picture, line, end_mm
+        self.wait_for(line, end_mm, self.display)
         memory = open_memory("vbraille-picture", max(picture.nbytes, 1))
         with os.fdopen(os.dup(memory), "wb") as out:
             out.write(picture.numbers.tobytes())

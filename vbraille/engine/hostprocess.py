@@ -217,7 +217,7 @@ def run(parent: Parent, memory: int) -> None:
                 loop.tick()
                 parent.pass_on(loop.clock.now_ns())
         finally:
-            _log.info("ending after %d ticks", loop.tally.ticks)
+            _log.info("ending after %d ticks", loop.now["tick"])
             with suppress(DeviceError):
                 loop.fade_to_rest()
             parent.pass_on(1 << 62)

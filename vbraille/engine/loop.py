@@ -16,8 +16,8 @@ from vbraille.engine.constants import (
     NS_PER_S,
     STEP_NS,
 )
-from vbraille.engine.engine import EndOfLine, Watcher
-from vbraille.engine.record import FLAGS, FLOATS, INTS, LATE, LATENESS, WORK, Flag, Ring, Tally
+from vbraille.engine.engine import Watcher
+from vbraille.engine.record import FLAGS, FLOATS, INTS, LATE, LATENESS, WORK, Flag, Ring
 from vbraille.engine.ticks import POSE_THETA, POSE_X, POSE_Y, POSED
 from vbraille.errors import DeviceError, check_range
 from vbraille.render import work
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 # Plain numbers, since joining flags of an enumeration takes a microsecond.
 _HELD = int(Flag.HELD)
-_PLACING = (0, int(Flag.MARK), int(Flag.STOP))  # the flag for each `Placing`
+_PLACING = (0, int(Flag.STOP))  # the flag for each `Placing`
 _SAME_RATE = 0.01
 # A pose that is there begins a tick at once, but no sooner than a period, divided by this, after
 # the one before; and a tick without one comes so much later than a period.
@@ -113,13 +113,6 @@ class Loop:
         # The frame before, the time at which it was sent, and how far its fade had come.
         self._before, self._before_ns = self.output.copy(), (now_ns, 0)
         self._serials = 0
-
-    @property
-    def tally(self) -> Tally:
-        """Counts of what happened so far."""
-        now = self.now
-        forward = float(now["forward_mm"]), float(now["forward_s"])
-        return Tally(int(now["tick"]), self._late, *forward)
 
     def show(self, picture: Program, line: int) -> None:
         """Put another picture under the hand from the next tick on; it fades in.
@@ -326,7 +319,6 @@ class LocalEngine(Loop, Watcher):
         Watcher.__init__(self)
         self.display = device.display
         self.poll_ticks = poll_ticks
-        self._reader = ring.reader()
 
     @property
     def steered(self) -> bool:
@@ -336,8 +328,7 @@ class LocalEngine(Loop, Watcher):
     def show(self, picture: Program, line: int, end_mm: float | None = None) -> None:
         """Put another picture under the hand; see `vbraille.engine.host.Host.show`."""
         super().show(picture, line)
-        self._line = line
-        self._end = None if end_mm is None else EndOfLine(self.display.span_mm, end_mm)
+        self.wait_for(line, end_mm, self.display)
 
     def give(self, order: HandOrder) -> None:
         """Tell a simulated hand what to do; nothing happens where a person moves the device."""
@@ -351,7 +342,7 @@ class LocalEngine(Loop, Watcher):
         return self._take()
 
     def _take(self) -> NDArray[np.void]:
-        ticks = self._reader.drain()
+        ticks = self.ring.drain()
         self.watch(ticks, self.display)
         return ticks
 

@@ -50,7 +50,6 @@ class Flag(IntFlag):
 
     PAUSED = 1
     SILENT = 2  # the device has given no pose for a while
-    MARK = 8  # the device waits for its mark
     STOP = 16  # the device waits to be told that it is at the left stop
     RESTING = 32  # nothing is shown, whatever the line
     CHANGED = 64  # a fade begins here, from the frame before
@@ -114,66 +113,20 @@ _HEADER_BYTES = 64
 RING_S = 8.0  # of ticks are kept for readers
 
 
-class Ring:
-    """The writer's end: records of the last ticks.
-
-    Parameters
-    ----------
-    buffer
-        Zeroed memory of `bytes_needed`, shared or not.
-    shape
-        Rows and columns of a frame.
-    size
-        How many ticks it holds.
-
-    Attributes
-    ----------
-    columns : tuple of arrays
-        All records, as `vbraille.engine.record.columns_of` gives them, to be filled.
-    integers : memoryview[size, INTS]
-        Whole numbers of all records.
-    """
-
-    def __init__(self, buffer: memoryview, shape: tuple[int, int], size: int) -> None:
-        self.columns = columns_of(np.frombuffer(buffer, tick_dtype(shape), size, _HEADER_BYTES))
-        self.integers = self.columns[0].data  # set one by one in half of numpy's time
-        self._published = buffer[:_HEADER_BYTES].cast("q")
-        self._of = buffer, shape, size
-
-    @classmethod
-    def alone(cls, shape: tuple[int, int], size: int) -> Self:
-        """Make a ring in memory of its own."""
-        return cls(memoryview(bytearray(cls.bytes_needed(shape, size))), shape, size)
-
-    @staticmethod
-    def bytes_needed(shape: tuple[int, int], size: int) -> int:
-        """Size of the buffer, a multiple of 8."""
-        return _HEADER_BYTES + size * tick_dtype(shape).itemsize
-
-    @property
-    def slot(self) -> int:
-        """Place of the record that comes next."""
-        return self._published[0] % self._of[2]
-
-    def publish(self, count: int = 1) -> None:
-        """Let a record be seen, or several that were filled one after the other."""
-        self._published[0] += count
-
-    def reader(self) -> RingReader:
-        """Make a reader of the records from now on, in this process."""
-        return RingReader(*self._of)
-
-
 class RingReader:
-    """A reader's end; there may be many on one memory, in this process and in others.
+    """A reader of records; there may be many on one memory, in this process and in others.
 
     It begins with the newest record that is there when it joins; a reader that joins before the
     first record sees all.
 
     Parameters
     ----------
-    buffer, shape, size
-        What the writer's end was made with. The memory may be read-only.
+    buffer
+        Memory of `Ring.bytes_needed`, shared or not; it may be read-only.
+    shape
+        Rows and columns of a frame.
+    size
+        How many ticks it holds.
 
     Attributes
     ----------
@@ -204,3 +157,39 @@ class RingReader:
         self.lost += whole - self.cursor
         self.cursor = end
         return ticks[whole - first :]
+
+
+class Ring(RingReader):
+    """The writer's end: records of the last ticks, which begin as zeros.
+
+    Attributes
+    ----------
+    columns : tuple of arrays
+        All records, as `vbraille.engine.record.columns_of` gives them, to be filled.
+    integers : memoryview[size, INTS]
+        Whole numbers of all records.
+    """
+
+    def __init__(self, buffer: memoryview, shape: tuple[int, int], size: int) -> None:
+        super().__init__(buffer, shape, size)
+        self.columns = columns_of(self._records)
+        self.integers = self.columns[0].data  # set one by one in half of numpy's time
+
+    @classmethod
+    def alone(cls, shape: tuple[int, int], size: int) -> Self:
+        """Make a ring in memory of its own."""
+        return cls(memoryview(bytearray(cls.bytes_needed(shape, size))), shape, size)
+
+    @staticmethod
+    def bytes_needed(shape: tuple[int, int], size: int) -> int:
+        """Size of the buffer, a multiple of 8."""
+        return _HEADER_BYTES + size * tick_dtype(shape).itemsize
+
+    @property
+    def slot(self) -> int:
+        """Place of the record that comes next."""
+        return self._published[0] % self._records.size
+
+    def publish(self, count: int = 1) -> None:
+        """Let a record be seen, or several that were filled one after the other."""
+        self._published[0] += count

@@ -20,7 +20,7 @@ _REFUSED_S, _HOPELESS_S = 1.0, 10.0  # without a frame taken
 _TURNS, _SAME_MM = 3, 1.0  # three turns within 1 mm are an obstacle
 _LEAST_WAY_MM = 20.0  # a hand that has gone less waits at the left
 # Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
-_PLACING, HELD = int(Flag.MARK | Flag.STOP), int(Flag.HELD)
+_PLACING, HELD = int(Flag.STOP), int(Flag.HELD)
 
 
 class HandWatch:

@@ -43,7 +43,6 @@ _BEFORE, _AFTER = 2, 3  # lines around the one under the hand
 _EVERY = 2  # polls from one state to the next
 _NUMBER = 0xFFFF_FFFF  # as much of a line's number as a frame has room for
 _PLACES = {
-    Placing.MARK: "place: the carriage has to pass its mark",
     Placing.STOP: "place: the carriage has to be shown its place",
 }
 

@@ -8,8 +8,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.conventional.display import ConventionalDisplay, DisplayAway, DisplayStands
-from vbraille.layout import lay_out_text
+from vbraille.layout import Layout
 from vbraille.reading.outputs import Cue, Output
+from vbraille.translate import Book, text_source
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -95,7 +96,8 @@ class Pins(Output):
                 self._first = self._finger // width * width
             if not another:
                 self.show(what)
-        layouts = (lay_out_text(sentence, width, self._table) for sentence in self._sentences)
+        books = (Book(text_source(sentence), self._table) for sentence in self._sentences)
+        layouts = (Layout(book, width) for book in books)
         parts = [part.masks.tobytes() for layout in layouts for part in layout.lines()]
         keys = [self._named(self._display.keys.popleft()) for _ in range(len(self._display.keys))]
         asked = [key for key in keys if key and not self._pan(_PAN.get(key, 0), len(parts))]

@@ -104,7 +104,7 @@ def render_reading(
         for page, along_mm, down_mm in _walk(iter(lines), model, hand, rate_hz, per_page):
             if not count:
                 recorder.describe(
-                    model=model,
+                    model,
                     rate_hz=rate_hz,
                     first_line=layout.number(page[0]),
                     source=source.name,
@@ -188,8 +188,12 @@ def render_picture(
     frames = way.t_s.size
     with EAR.deferred(), new_file(path, replace=replace_file) as file:
         recorder = Recorder(file, display, 1)
-        recorder.describe_scene(
-            SceneRecorded(
+        recorder.describe(
+            model,
+            rate_hz=rate_hz,
+            source=Path(scene).name,
+            sha256=hashlib.sha256(written).hexdigest(),
+            scene=SceneRecorded(
                 text=written,
                 title=loaded.title,
                 description=loaded.scene.description,
@@ -197,10 +201,6 @@ def render_picture(
                 height_mm=canvas.height_mm,
                 map_png=small_png(loaded.scene, loaded.assets),
             ),
-            model=model,
-            rate_hz=rate_hz,
-            source=Path(scene).name,
-            sha256=hashlib.sha256(written).hexdigest(),
             path=hand,
         )
         for span in _blocks(frames):

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 MOST_LINES, MOST_CELLS = 64, 512  # that are shown at once
 # Plain numbers: with an enumeration numpy asks for attributes, and may lose a signal meanwhile.
 _PAUSED = int(Flag.PAUSED)
-_UNFELT = int(Flag.SILENT | Flag.MARK | Flag.STOP | Flag.HELD | Flag.TURNED)
+_UNFELT = int(Flag.SILENT | Flag.STOP | Flag.HELD | Flag.TURNED)
 # A finger that goes across lines is on none of them: nothing of one has faded in before.
 _ON_NS = 120_000_000
 # Longer than a finger that strays off the last line takes to come back.

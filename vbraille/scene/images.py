@@ -1,23 +1,30 @@
-"""Images of a scene as bitmaps: placed, averaged, blurred: Lévesque 2009, 8.4.2."""
+"""Images of a scene: placed, averaged and blurred as bitmaps, or made into dots.
+
+Lévesque 2009, 8.4.2; dots in the places of blobs are of 6.3.1, and those of a grid of 5.3.
+"""
 
 from __future__ import annotations
 
 import math
-from contextlib import contextmanager
+from collections import defaultdict
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import msgspec
+import numpy as np
 
 from vbraille.errors import InputError, needing_extras
 from vbraille.scene.bitmap import WHOLE, Bitmap, pixel_size_mm
-from vbraille.scene.imagefiles import intensities_of
-from vbraille.scene.patterns import Image
+from vbraille.scene.imagefiles import ImageFile
+from vbraille.scene.patterns import Dots, Group, Image, Pattern
 from vbraille.scene.traversal import each
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
-    from vbraille.scene.patterns import ImageDots
+    from vbraille.scene.measures import Point
+    from vbraille.scene.patterns import AnyPattern, ImageDots
     from vbraille.scene.scene import Scene
 
 # The source asks for 5 to 10 pixels per mm; more than the larger is averaged away.
@@ -28,6 +35,12 @@ _WIDEST_BLUR = 5.0  # pixels
 _BLUR_REACH = 4.0  # standard deviations
 MOST_PIXELS = 16_000_000  # of a bitmap; larger images have fewer per mm
 MOST_TOGETHER = 64_000_000  # of a scene's bitmaps
+MOST_DOTS = 20_000
+# Dots share a pattern if they look the same: no finger tells these steps, nor does an 8-bit image
+# have finer ones.
+_RADIUS_MM = 0.01
+_LEVELS = 255
+_LEAST_RADIUS_MM = 0.05
 
 
 def load_bitmaps(scene: Scene, folder: Path, places: Sequence[str] = ()) -> dict[Image, Bitmap]:
@@ -73,7 +86,7 @@ def load_bitmaps(scene: Scene, folder: Path, places: Sequence[str] = ()) -> dict
                     kept[source] = _laid(image, folder)
                 if sum(one.intensities.size for one in kept.values()) > MOST_TOGETHER:
                     raise InputError(
-                        f"{named(image)}: the images of the scene have more than "
+                        f"{_named(image)}: the images of the scene have more than "
                         f"{MOST_TOGETHER // 1_000_000} million pixels together; make some smaller"
                     )
             except InputError as error:
@@ -86,86 +99,63 @@ def load_bitmaps(scene: Scene, folder: Path, places: Sequence[str] = ()) -> dict
     return bitmaps
 
 
-def named(image: Image | ImageDots) -> str:
+def _named(image: Image | ImageDots) -> str:
     """Name of an element with an image file, for messages."""
     return f"element {image.id}" if image.id else f"image {image.file}"
 
 
-@contextmanager
-def naming(image: Image | ImageDots) -> Iterator[None]:
-    """Put the name of an element before what is said of its file."""
+def _read(image: Image | ImageDots, folder: Path, per_mm: float) -> Bitmap:
+    """Intensities of the file of an element, at the origin, with a number of pixels per mm."""
+    channel = image.channel if isinstance(image, Image) else "gray"
+    blur_mm = image.blur_mm if isinstance(image, Image) else 0.0
     try:
-        yield
+        file = ImageFile(Path(folder, image.file))
+        width, height = _size_mm(image, file)
+        if blur_mm > min(width, height):
+            raise ValueError(
+                f"a blur of {blur_mm:g} mm, which is more than its width or height; make it smaller"
+            )
+        # Vast images have fewer pixels per mm, and a band of 10 m by 0.1 mm has a row, too.
+        per_mm = min(per_mm, math.sqrt(MOST_PIXELS / (width * height)))
+        columns = min(file.columns, max(int(width * per_mm), 1))
+        rows = min(file.rows, max(int(height * per_mm), 1))
+        return Bitmap(file.intensities(channel, columns, rows), (0.0, 0.0), width, height)
+    except ValueError as error:
+        raise InputError(f"{_named(image)} has {error}") from None
     except InputError as error:
-        message = str(error)
-        if message.startswith(named(image)):
-            raise
-        raise InputError(f"{named(image)}: {message}") from None
+        raise InputError(f"{_named(image)}: {error}") from None
 
 
-def size_mm(
-    image: Image | ImageDots, columns: int, rows: int, own_mm: tuple[float, float] | None = None
-) -> tuple[float, float]:
+def _size_mm(image: Image | ImageDots, file: ImageFile) -> tuple[float, float]:
     """Width and height of an image on the canvas.
 
     If one is not given, it follows from the shape of the image's pixels; if neither is, they are
     those that a drawing has itself.
-
-    Raises
-    ------
-    InputError
-        If neither is given nor known, or what follows is below 0.1 mm or above 10 m.
     """
     width, height = image.width_mm, image.height_mm
-    if width is None and height is None and own_mm is not None:
-        width, height = own_mm
     if width is None and height is None:
-        raise InputError(f"{named(image)} has no size; give width_mm or height_mm")
-    if width is None:
-        width = (height or 0.0) * columns / rows
-    if height is None:
-        height = width * rows / columns
-    for what, value in (("width", width), ("height", height)):
-        if not 0.1 <= value <= 10_000.0:
-            raise InputError(
-                f"{named(image)} would have a {what} of {value:g} mm by the picture's shape; "
-                "give both width_mm and height_mm"
-            )
+        width, height = file.size_mm or (None, None)
+    if width is None and height is None:
+        raise ValueError("no size; give width_mm or height_mm")
+    width = (height or 0.0) * file.columns / file.rows if width is None else width
+    height = width * file.rows / file.columns if height is None else height
+    if not 0.1 <= min(width, height) <= max(width, height) <= 10_000.0:
+        raise ValueError(
+            f"a size of {width:g} × {height:g} mm by the picture's shape; "
+            "give both width_mm and height_mm"
+        )
     return width, height
-
-
-def shape_of(width_mm: float, height_mm: float, per_mm: float) -> tuple[int, int]:
-    """Columns and rows of a bitmap at a density in pixels per mm, or fewer if it is vast."""
-    most = math.sqrt(MOST_PIXELS / (width_mm * height_mm))
-    per_mm = min(per_mm, most)
-    # A band of 10 m by 0.1 mm has a row, too.
-    return max(int(width_mm * per_mm), 1), max(int(height_mm * per_mm), 1)
 
 
 def _laid(image: Image, folder: Path) -> Bitmap:
     """Bitmap of an image at the origin, which its blur makes larger."""
-    size = (0.0, 0.0)
     # Whose own pixels count has all of them.
     per_mm = math.inf if image.nearest else MOST_PER_MM
     if image.blur_mm and not image.nearest:
         per_mm = min(per_mm, _WIDEST_BLUR / image.blur_mm)
-
-    def shape(columns: int, rows: int, own: tuple[float, float] | None) -> tuple[int, int]:
-        nonlocal size
-        size = size_mm(image, columns, rows, own)
-        if image.blur_mm > min(size):
-            raise InputError(
-                f"{named(image)} has a blur of {image.blur_mm:g} mm, which is more than its width "
-                "or height; make it smaller"
-            )
-        most_columns, most_rows = shape_of(*size, per_mm)
-        return min(columns, most_columns), min(rows, most_rows)
-
-    with naming(image):
-        intensities = intensities_of(Path(folder, image.file), image.channel, shape)
+    laid = _read(image, folder, per_mm)
     if image.inverted_source:
-        intensities = WHOLE - intensities
-    laid = Bitmap(intensities, (0.0, 0.0), *size)
+        laid = replace(laid, intensities=WHOLE - laid.intensities)
     if not image.blur_mm:
         return laid
     return _blurred_pixels(laid, image) if image.nearest else _blurred(laid, image)
@@ -173,8 +163,6 @@ def _laid(image: Image, folder: Path) -> Bitmap:
 
 def _blurred(laid: Bitmap, image: Image) -> Bitmap:
     """Blur an image, which then reaches farther."""
-    import numpy as np
-
     with needing_extras():
         from scipy.ndimage import gaussian_filter
     pixel_mm = pixel_size_mm(laid)
@@ -202,8 +190,6 @@ def _blurred_pixels(laid: Bitmap, image: Image) -> Bitmap:
     where the outermost pixels go on beyond the edges. What is less than an 8-bit step falls away,
     of opacity as of what is transparent.
     """
-    import numpy as np
-
     with needing_extras():
         from scipy.ndimage import convolve1d
     sigma = round(image.blur_mm / math.sqrt(math.prod(pixel_size_mm(laid))), 3)
@@ -217,3 +203,142 @@ def _blurred_pixels(laid: Bitmap, image: Image) -> Bitmap:
     step = WHOLE // 255
     levels = np.ceil(made / step) if image.channel == "alpha" else np.floor(made / step)
     return replace(laid, intensities=(levels * step).astype(np.uint16))
+
+
+class _Dot(NamedTuple):
+    center_mm: Point
+    radius_mm: float
+    amplitude: float
+
+
+def dots_of(pattern: ImageDots, folder: Path) -> AnyPattern:
+    """Dots of an image.
+
+    Without a grid of cells, pixels above the threshold that touch, also at a corner, are a blob.
+    Its dot stands at its centre of mass, by gray, and is as high as its brightest pixel.
+
+    Parameters
+    ----------
+    pattern
+        Image, and how its dots look. The amplitude of that counts together with the gray.
+    folder
+        Folder from which the name of its file is seen.
+
+    Returns
+    -------
+    Dots or Group
+        The dots; a group, by the maximum, if not all look the same.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, nothing in it is above the threshold, there are more than
+        20,000 dots, dots overlap, which they may not (6.3.1), or one is farther away than 10 m.
+    """
+    read = _read(pattern, folder, MOST_PER_MM)
+    try:
+        dots = _blobs(pattern, read) if pattern.cell_mm is None else _cells(pattern, read)
+        if not dots:
+            raise ValueError(
+                "no dot: nothing in its image is above the threshold of "
+                f"{pattern.threshold:g}; make that smaller"
+            )
+        _refuse_overlap(dots)
+        return _drawn(pattern, dots)
+    except ValueError as error:
+        raise InputError(f"{_named(pattern)} has {error}") from None
+
+
+def _blobs(pattern: ImageDots, read: Bitmap) -> list[_Dot]:
+    """Find a dot for each connected set of pixels above the threshold."""
+    with needing_extras():
+        from scipy import ndimage
+    gray, (wide, high) = read.intensities, pixel_size_mm(read)
+    labeled: Any = ndimage.label(gray > pattern.threshold * WHOLE, np.ones((3, 3)))
+    labels, count = labeled  # a pair unless the labels are to be written elsewhere
+    _check_count(count, "blobs")
+    numbers = np.arange(1, count + 1)
+    centers: Any = ndimage.center_of_mass(gray.astype(np.float64), labels, numbers)
+    largest = ndimage.maximum(gray, labels, numbers) if count else ()
+    areas = np.bincount(labels.ravel(), minlength=count + 1)[1:] * wide * high
+    left, top = pattern.place_mm
+    return [
+        _Dot(
+            (left + (column + 0.5) * wide, top + (row + 0.5) * high),
+            math.sqrt(area / math.pi) if pattern.by_area else pattern.dot.radius_mm,
+            float(high_gray) / WHOLE,
+        )
+        for (row, column), area, high_gray in zip(centers, areas, largest, strict=True)
+    ]
+
+
+def _cells(pattern: ImageDots, read: Bitmap) -> list[_Dot]:
+    """Find a dot for each cell of a grid whose mean gray is above the threshold."""
+    from PIL import Image as Pillow
+
+    wide, high = pattern.cell_mm or (0.0, 0.0)
+    # Whole cells only, as in the source: 113 by 60 mm have 94 by 33.
+    columns, rows = int(read.width_mm / wide + 1e-9), int(read.height_mm / high + 1e-9)
+    if not columns or not rows:
+        raise ValueError("an image smaller than a cell; make the cells smaller")
+    _check_count(columns * rows, "cells")
+    pixel_mm = pixel_size_mm(read)
+    covered = (0.0, 0.0, columns * wide / pixel_mm[0], rows * high / pixel_mm[1])
+    means = Pillow.fromarray(read.intensities.astype(np.float32)).resize(
+        (columns, rows), Pillow.Resampling.BOX, box=covered
+    )
+    left, top = pattern.place_mm
+    radius = min(pattern.dot.radius_mm, wide / 2, high / 2)
+    return [
+        _Dot((left + (column + 0.5) * wide, top + (row + 0.5) * high), radius, mean / WHOLE)
+        for row, line in enumerate(np.asarray(means).tolist())
+        for column, mean in enumerate(line)
+        if mean > pattern.threshold * WHOLE
+    ]
+
+
+def _check_count(count: int, what: str) -> None:
+    if count > MOST_DOTS:
+        raise ValueError(
+            f"{count} {what}, and no more than {MOST_DOTS} can be dots; take a simpler image"
+        )
+
+
+def _refuse_overlap(dots: list[_Dot]) -> None:
+    """Refuse dots that overlap; the larger look for smaller ones, so that none looks far."""
+    with needing_extras():
+        from scipy.spatial import KDTree
+    tree = KDTree([dot.center_mm for dot in dots])
+    for dot in dots:
+        for near in tree.query_ball_point(dot.center_mm, 2 * dot.radius_mm):
+            other = dots[near]
+            apart = math.dist(dot.center_mm, other.center_mm)
+            if other is not dot and apart < dot.radius_mm + other.radius_mm - _RADIUS_MM:
+                (x, y), (x2, y2) = dot.center_mm, other.center_mm
+                raise ValueError(
+                    f"dots that overlap, at {x:.1f}, {y:.1f} mm and at {x2:.1f}, {y2:.1f} mm; "
+                    "draw them farther apart, or make them smaller"
+                )
+
+
+def _drawn(pattern: ImageDots, dots: list[_Dot]) -> AnyPattern:
+    """Draw dots, those that look the same as one pattern."""
+    alike: dict[Point, list[Point]] = defaultdict(list)
+    for dot in dots:
+        radius, level = round(dot.radius_mm / _RADIUS_MM), round(dot.amplitude * _LEVELS)
+        alike[radius, level].append(dot.center_mm)
+    own = {name: getattr(pattern, name) for name in Pattern.__struct_fields__}
+    parts = [
+        Dots(
+            centers_mm=tuple(centers),
+            dot=msgspec.structs.replace(
+                pattern.dot,
+                radius_mm=max(radius * _RADIUS_MM, _LEAST_RADIUS_MM),
+                amplitude=pattern.dot.amplitude * level / _LEVELS,
+            ),
+        )
+        for (radius, level), centers in sorted(alike.items())
+    ]
+    if len(parts) == 1:
+        return msgspec.structs.replace(parts[0], **own)
+    return Group(operation="maximum", parts=tuple(parts), **own)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
@@ -15,9 +16,10 @@ if TYPE_CHECKING:
     from vbraille.scene.scene import Scene
     from vbraille.scene.traversal import Steps
 
+_MOST_LINES = 5  # that one remark names
 
-@dataclass(frozen=True, slots=True)
-class FoundScene:
+
+class FoundScene(NamedTuple):
     """Scene that a reader of a format of others gives back.
 
     Parameters
@@ -33,8 +35,39 @@ class FoundScene:
     """
 
     scene: Scene
-    lines: Mapping[Steps, int] = field(default_factory=dict)
-    warnings: tuple[str, ...] = ()
+    lines: Mapping[Steps, int]
+    warnings: tuple[str, ...]
+
+
+class Remarks:
+    """What is said of a file of another format, with the lines and elements for which it holds."""
+
+    def __init__(self) -> None:
+        self._places: dict[str, list[tuple[int, str]]] = defaultdict(list)
+
+    def note(self, remark: str, line: int, name: str) -> None:
+        """Keep a remark on an element, by its line and its name."""
+        self._places[remark].append((line, name))
+
+    def said(self) -> tuple[str, ...]:
+        """All remarks by their first lines, each once.
+
+        >>> remarks = Remarks()
+        >>> for line in (9, 4):
+        ...     remarks.note("its icon is ignored", line, "Circle")
+        >>> remarks.said()
+        ('line 4, Circle: its icon is ignored (and line 9)',)
+        """
+        sentences: list[str] = []
+        for remark, places in sorted(self._places.items(), key=lambda one: min(one[1])):
+            line, name = min(places)
+            others = sorted({other for other, _ in places} - {line})
+            more = len(others) - _MOST_LINES
+            listed = ", ".join(map(str, others[:_MOST_LINES]))
+            rest = f" and {more} more" if more > 0 else ""
+            also = f" (and line{'s' if others[1:] else ''} {listed}{rest})" if others else ""
+            sentences.append(f"line {line}, {name}: {remark}{also}")
+        return tuple(sentences)
 
 
 class ForeignFile(NamedTuple):
@@ -43,52 +76,18 @@ class ForeignFile(NamedTuple):
     where: str
     lines: Mapping[Steps, int]
 
-    def fail(self, steps: Steps, problem: str) -> NoReturn:
-        """Refuse the file for a problem at a place in the scene that it holds.
 
-        Raises
-        ------
-        InputError
-            In any case.
-        """
-        raise InputError(f"{_place(self, steps)}: {about(steps, problem)}")
-
-
-SceneSource = ForeignFile | TomlFile
-
-
-def _place(file: SceneSource, steps: Steps) -> str:
-    """Name of a file, and the line of the nearest thing around a place that has one."""
-    for depth in range(len(steps), 0, -1):
-        if steps[:depth] in file.lines:
-            return f"{file.where} line {file.lines[steps[:depth]]}"
-    return file.where
-
-
-@dataclass(frozen=True, slots=True)
-class Locations:
-    """Places where each element and named texture of a scene is written.
-
-    Parameters
-    ----------
-    places
-        Files, and places in them, by places of the scene.
-    """
-
-    places: dict[Steps, tuple[SceneSource, Steps]] = field(default_factory=dict)
-
-    def of(self, steps: Steps) -> tuple[SceneSource, Steps] | None:
-        """File that a place of the scene comes from, and the place in that file."""
-        for depth in range(len(steps), 0, -1):
-            if steps[:depth] in self.places:
-                file, there = self.places[steps[:depth]]
-                return file, (*there, *steps[depth:])
-        return None
+class Locations(dict["Steps", "tuple[ForeignFile | TomlFile, Steps]"]):
+    """Files, and places in them, of the elements, textures and signals of a scene."""
 
     def place(self, steps: Steps) -> str:
         """File and line of a place of the scene, or words for it if it comes from no file."""
-        found = self.of(steps)
-        return said(steps) if found is None else _place(*found)
+        file, there = self._of(steps)
+        if file is None:
+            return said(steps)
+        while there and there not in file.lines:
+            there = there[:-1]
+        return f"{file.where} line {file.lines[there]}" if there else file.where
 
     def fail(self, steps: Steps, problem: str) -> NoReturn:
         """Refuse the scene for a problem at a place in it, with the file and the line.
@@ -98,11 +97,19 @@ class Locations:
         InputError
             In any case.
         """
-        found = self.of(steps)
-        if found is None:
-            raise InputError(about(steps, problem))
-        file, there = found
-        file.fail(there, problem)
+        file, there = self._of(steps)
+        if isinstance(file, TomlFile):
+            file.fail(there, problem)
+        about = f"{said(there)}{'' if problem.startswith(':') else ' '}{problem}"
+        raise InputError(f"{self.place(steps)}: {about}" if file else about)
+
+    def _of(self, steps: Steps) -> tuple[ForeignFile | TomlFile | None, Steps]:
+        """File that a place of the scene comes from, and the place in that file."""
+        for depth in range(len(steps), 0, -1):
+            if steps[:depth] in self:
+                file, there = self[steps[:depth]]
+                return file, (*there, *steps[depth:])
+        return None, steps
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +137,7 @@ class OpenedScene:
     folder: Path
     written: Scene
     resolved: Scene
-    locations: Locations
+    locations: Locations = field(default_factory=Locations)
     warnings: tuple[str, ...] = ()
 
     @property
@@ -151,12 +158,3 @@ def said(steps: Steps) -> str:
     """
     words = (f", number {step + 1}" if isinstance(step, int) else f" {step}" for step in steps)
     return "".join(words).strip()
-
-
-def about(steps: Steps, problem: str) -> str:
-    """Sentence about a place in a scene; the problem begins with a colon or a verb.
-
-    >>> about(("elements", 0), "has no place")
-    'elements, number 1 has no place'
-    """
-    return f"{said(steps)}{problem}" if problem.startswith(":") else f"{said(steps)} {problem}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
@@ -22,9 +22,12 @@ from vbraille.toml import Table, TomlFile
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from vbraille.scene.locations import FoundScene, SceneSource
+    from vbraille.scene.locations import FoundScene
     from vbraille.scene.traversal import Steps
 
+    # Where an element and the parts of it are written, by the keys that lead to these from it.
+    _Places = dict[Steps, tuple[ForeignFile | TomlFile, Steps]]
+    _Element = tuple[AnyPattern, _Places]
 
 # Scenes of 50,000 shapes or so; larger files would take longer to read than anybody waits.
 MOST_BYTES = 8_000_000
@@ -92,7 +95,7 @@ def open_scene(path: str | Path) -> OpenedScene:
         files include each other; one sentence says where.
     """
     path, reading = Path(path), _Reading()
-    return reading.opened(path, *reading.file(path, _Within((path,)), {}))
+    return reading.opened(path, *reading.file(path, (path,), Path(), "", {}))
 
 
 def open_text(text: str, name: str) -> OpenedScene:
@@ -104,46 +107,7 @@ def open_text(text: str, name: str) -> OpenedScene:
         If it is not right; one sentence says where.
     """
     path, reading = Path(name), _Reading()
-    return reading.opened(path, *reading.text(text, path, _Within((path,))))
-
-
-class _Located(NamedTuple):
-    """An element, and where it and the parts of it are written, by the keys that lead to these."""
-
-    pattern: AnyPattern
-    places: dict[Steps, tuple[SceneSource, Steps]]
-
-
-class _Within(NamedTuple):
-    """Files of which each includes the next, and what the last is seen from the first.
-
-    Parameters
-    ----------
-    way
-        The files.
-    folder
-        Folder of the last, seen from that of the first.
-    language
-        Language of its labels; empty for that of the scene.
-    """
-
-    way: tuple[Path, ...]
-    folder: Path = Path()
-    language: str = ""
-
-    def speaking(self, form: SceneFile) -> _Within:
-        """The same with the language that an included file says."""
-        return self._replace(language=form.language or self.language) if self.way[1:] else self
-
-    def seen(self, pattern: AnyPattern) -> AnyPattern:
-        """Pattern of the last file as one of the first."""
-
-        def change(one: AnyPattern) -> AnyPattern:
-            if isinstance(one, Label) and not one.table:
-                one = replace(one, table=self.language)
-            return with_files(one, lambda name: str(self.folder / name))
-
-        return mapped(pattern, change) if self.way[1:] else pattern
+    return reading.opened(path, *reading.text(text, path, (path,), Path(), ""))
 
 
 class _Reading:
@@ -155,38 +119,54 @@ class _Reading:
         self._warnings: list[str] = []
         self._read: set[Path] = set()
 
-    def opened(self, path: Path, form: SceneFile, elements: Sequence[_Located]) -> OpenedScene:
+    def opened(self, path: Path, form: SceneFile, elements: Sequence[_Element]) -> OpenedScene:
         """Put together the scene that was read."""
         if form.canvas is None:
             raise InputError(
                 f"{path} has no canvas; write [canvas] with width_mm and height_mm, "
                 "or include it in a scene that has one"
             )
-        for number, element in enumerate(elements):
-            for steps, place in element.places.items():
-                self._locations.places["elements", number, *steps] = place
+        for number, (_, places) in enumerate(elements):
+            for steps, place in places.items():
+                self._locations["elements", number, *steps] = place
         own: dict[str, Any] = {key: getattr(form, key) for key in Scene.__struct_fields__}
         own |= self._named
         own["language"] = form.language or _UNSAID_LANGUAGE
-        own["elements"] = tuple(element.pattern for element in elements)
+        own["elements"] = tuple(pattern for pattern, _ in elements)
         scene = Scene(**own)
         resolved = resolve(scene, path.parent, self._locations)
         warnings = tuple(self._warnings)
         return OpenedScene(path, path.parent, scene, resolved, self._locations, warnings)
 
     def file(
-        self, path: Path, within: _Within, classes: Mapping[str, ClassLook]
-    ) -> tuple[SceneFile, list[_Located]]:
+        self,
+        path: Path,
+        way: tuple[Path, ...],
+        folder: Path,
+        language: str,
+        classes: Mapping[str, ClassLook],
+    ) -> tuple[SceneFile, list[_Element]]:
         """Read a file, and the elements of it and of what it includes.
 
-        If it is a drawing, ``classes`` are those of the file that includes it.
+        Parameters
+        ----------
+        path
+            The file.
+        way
+            The files of which each includes the next, from the first to this one.
+        folder
+            Folder of the file, seen from that of the first.
+        language
+            Language of its labels; empty for that of the scene.
+        classes
+            Looks of classes, if it is a drawing, by the file that includes it.
         """
         there = str(path)  # whose functions, unlike a path's, take no permission for no
         if os.path.exists(there) and not (os.path.isfile(there) or os.path.isdir(there)):  # noqa: PTH110, PTH112, PTH113
             raise InputError(f"{path} is no ordinary file; give one that is")
         kind = form_of(path)
         if kind == "toml":
-            return self.text(read_text(path, "scene", MOST_BYTES), path, within)
+            return self.text(read_text(path, "scene", MOST_BYTES), path, way, folder, language)
         found = read_foreign(path, kind, classes)
         self._warnings += [
             f"{path}{'' if one.startswith('line ') else ':'} {one}" for one in found.warnings
@@ -195,10 +175,13 @@ class _Reading:
         if own["language"] == _UNSAID_LANGUAGE:
             own["language"] = ""
         form = SceneFile(**own)
-        return form, self._own(ForeignFile(str(path), found.lines), form, within.speaking(form))
+        source = ForeignFile(str(path), found.lines)
+        return form, self._own(source, form, way, folder, form.language or language)
 
-    def text(self, text: str, path: Path, within: _Within) -> tuple[SceneFile, list[_Located]]:
-        """Read the text of a scene file in TOML, and what it includes."""
+    def text(
+        self, text: str, path: Path, way: tuple[Path, ...], folder: Path, language: str
+    ) -> tuple[SceneFile, list[_Element]]:
+        """Read the text of a scene file in TOML, and what it includes; see `file`."""
         if text.count("kind") > MOST_PATTERNS:  # each has one
             raise InputError(f"{path} has more than {MOST_PATTERNS} patterns; use fewer")
         file = TomlFile(text, str(path))
@@ -206,62 +189,82 @@ class _Reading:
             for name in file.names(key):
                 file.read(kind, under=(key, name))
         form = file.read(SceneFile)
-        within = within.speaking(form)
-        elements: list[_Located] = []
-        for number in range(len(form.include)):
-            elements += self._included(file, ("include", number), form, path.parent, within)
-        return form, elements + self._own(file, form, within)
+        if way[1:]:
+            language = form.language or language
+        elements: list[_Element] = []
+        for number, name in enumerate(form.include):
+            inner = path.parent / name
+            real = self._checked(file, number, name, inner, way)
+            if real in self._read:  # by another file that includes it
+                continue
+            self._read.add(real)
+            there = folder / Path(name).parent
+            included, found = self.file(inner, (*way, real), there, language, form.classes)
+            if found and included.operation != form.operation:
+                found = [_grouped(included.operation, found)]
+            elements += found
+        return form, elements + self._own(file, form, way, folder, language)
 
-    def _included(
-        self, file: TomlFile, steps: Steps, form: SceneFile, folder: Path, within: _Within
-    ) -> list[_Located]:
-        """Read an included file; two may include a third, which is there once."""
-        name: str = file.at(steps)
-        if "://" in name or not name.strip():
-            file.fail(steps, f"is {name!r}; give the name of a file, since nothing is fetched")
-        path = folder / name
+    def _checked(
+        self, file: TomlFile, number: int, name: str, path: Path, way: tuple[Path, ...]
+    ) -> Path:
+        """Path of an included file without links, if it can be included."""
         try:
-            real = path.resolve()
-            there = path.is_file()
+            real, there = path.resolve(), path.is_file()
         except (OSError, ValueError, RuntimeError):
-            there, real = False, path
-        if not there:
-            file.fail(steps, f"is {name!r}, which is no file; check the name")
-        if real in (one.resolve() for one in within.way):
-            file.fail(steps, f"is {name!r}, which includes this file itself; leave it out")
-        if real in self._read:
-            return []
-        if len(self._read) + 1 >= MOST_FILES:
-            file.fail(steps, f"is one file more than the {MOST_FILES} that a scene can include")
-        self._read.add(real)
-        inside = within._replace(way=(*within.way, real), folder=within.folder / Path(name).parent)
-        inner, elements = self.file(path, inside, form.classes)
-        if not elements or inner.operation == form.operation:
-            return elements
-        places: dict[Steps, tuple[SceneSource, Steps]] = {
-            ("parts", number, *steps): place
-            for number, element in enumerate(elements)
-            for steps, place in element.places.items()
-        }
-        places[()] = elements[0].places[()]
-        parts = tuple(element.pattern for element in elements)
-        return [_Located(Group(operation=inner.operation, parts=parts), places)]
+            real, there = path, False
+        problem = ""
+        if "://" in name or not name.strip():
+            problem = f"is {name!r}; give the name of a file, since nothing is fetched"
+        elif not there:
+            problem = f"is {name!r}, which is no file; check the name"
+        elif real in (one.resolve() for one in way):
+            problem = f"is {name!r}, which includes this file itself; leave it out"
+        elif real not in self._read and len(self._read) + 1 >= MOST_FILES:
+            problem = f"is one file more than the {MOST_FILES} that a scene can include"
+        if problem:
+            file.fail(("include", number), problem)
+        return real
 
-    def _own(self, file: SceneSource, form: SceneFile, within: _Within) -> list[_Located]:
+    def _own(
+        self,
+        file: ForeignFile | TomlFile,
+        form: SceneFile,
+        way: tuple[Path, ...],
+        folder: Path,
+        language: str,
+    ) -> list[_Element]:
         """Take in the textures and signals of a file, and find its elements."""
-        textures = {name: within.seen(one) for name, one in form.textures.items()}
+
+        def seen(one: AnyPattern) -> AnyPattern:
+            if isinstance(one, Label) and not one.table:
+                one = replace(one, table=language)
+            return with_files(one, lambda name: str(folder / name))
+
+        textures, elements = form.textures, list(form.elements)
+        if way[1:]:
+            textures = {name: mapped(one, seen) for name, one in textures.items()}
+            elements = [mapped(one, seen) for one in elements]
         for kind, named in (("textures", textures), ("signals", form.signals)):
             for name, one in named.items():
-                if name in self._named[kind]:
-                    first = self._locations.place((kind, name))
+                steps = (kind, name)
+                first = self._locations.place(steps)
+                is_known = steps in self._locations
+                self._locations[steps] = file, steps
+                if is_known:
                     problem = f"is called {name}, as is {first}; give it another name"
-                    file.fail((kind, name), problem)
+                    self._locations.fail(steps, problem)
                 self._named[kind][name] = one
-                self._locations.places[kind, name] = file, (kind, name)
-        return [
-            _Located(within.seen(element), {(): (file, ("elements", number))})
-            for number, element in enumerate(form.elements)
-        ]
+        return [(one, {(): (file, ("elements", number))}) for number, one in enumerate(elements)]
+
+
+def _grouped(operation: Operation, elements: Sequence[_Element]) -> _Element:
+    """Elements that are put together otherwise than those around them, as one."""
+    places: _Places = {(): elements[0][1][()]}
+    for number, (_, inner) in enumerate(elements):
+        places |= {("parts", number, *steps): place for steps, place in inner.items()}
+    parts = tuple(pattern for pattern, _ in elements)
+    return Group(operation=operation, parts=parts), places
 
 
 def form_of(path: Path) -> str:

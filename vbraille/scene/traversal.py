@@ -7,13 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
-from vbraille.scene.pattern import Pattern
-from vbraille.scene.patterns import Fill, Tile
-from vbraille.scene.strokes import Vibration
-from vbraille.scene.textures import SignalLevel, UniformVibration
+from vbraille.scene.patterns import Fill, Pattern, SignalLevel, Tile, UniformVibration, Vibration
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from vbraille.scene.measures import Point, RidgeWave
     from vbraille.scene.patterns import AnyPattern
@@ -76,7 +73,7 @@ def placed_children(pattern: AnyPattern) -> list[tuple[Steps, AnyPattern]]:
     """Patterns that stand directly in a pattern, with the keys that lead from it to each.
 
     >>> from vbraille.scene.patterns import Tile
-    >>> from vbraille.scene.textures import Uniform
+    >>> from vbraille.scene.patterns import Uniform
     >>> [steps for steps, _ in placed_children(Tile(width_mm=5, height_mm=5, part=Uniform()))]
     [('part',)]
     """
@@ -93,6 +90,30 @@ def placed_children(pattern: AnyPattern) -> list[tuple[Steps, AnyPattern]]:
 def children(pattern: AnyPattern) -> list[AnyPattern]:
     """Patterns that stand directly in a pattern, in the order in which they are written."""
     return [part for _, part in placed_children(pattern)]
+
+
+def lines_of(
+    elements: Iterable[AnyPattern], made: Mapping[int, tuple[AnyPattern, int]]
+) -> dict[Steps, int]:
+    """Lines of the elements of a scene, and of what stands in them, by the keys that lead to them.
+
+    Parameters
+    ----------
+    elements
+        The elements.
+    made
+        Patterns that have a line, with that, by their ids.
+    """
+    lines: dict[Steps, int] = {}
+    left: list[tuple[Steps, AnyPattern]] = [
+        (("elements", n), one) for n, one in enumerate(elements)
+    ]
+    while left:
+        steps, pattern = left.pop()
+        if id(pattern) in made:
+            lines[steps] = made[id(pattern)][1]
+        left += [((*steps, *more), part) for more, part in placed_children(pattern)]
+    return lines
 
 
 def mapped(pattern: AnyPattern, change: Callable[[AnyPattern], AnyPattern]) -> AnyPattern:
@@ -193,7 +214,7 @@ def moved(pattern: AnyPattern, move_mm: Point) -> AnyPattern:
         If something would be farther than 10 m from the origin.
 
     >>> from vbraille.scene.patterns import Circle
-    >>> from vbraille.scene.strokes import Stroke
+    >>> from vbraille.scene.patterns import Stroke
     >>> moved(Circle(center_mm=(10, 20), radius_mm=5, stroke=Stroke()), (1, -2)).center_mm
     (11, 18)
     """

@@ -8,11 +8,11 @@ import numpy as np
 
 from vbraille.errors import InputError
 from vbraille.live.messages import PlayedEvent, ViewState
-from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
+from vbraille.live.states import array_shown
 from vbraille.playback.recorded import PLAYED, Piece, Playback
-from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import KINDS, Event
 from vbraille.sessions.record.replay import Replay
+from vbraille.sessions.running.liveview import stimulus_shown
 
 SAID = ("answer", "what", "text", "why", "by")  # what of an event's data is said
 
@@ -31,9 +31,8 @@ class SessionPlayback(Playback):
     def __init__(self, path: Path) -> None:
         super().__init__()
         self._replay = Replay(path)
-        content, self._protocol = self._replay.content, self._replay.protocol
-        self._progress = Progress(self._protocol, content.plan, content.events)
-        if not self._progress.ended:
+        content = self._replay.content
+        if not self._replay.progress.ended:
             self.notes.append(
                 "the session has not ended; a participant who goes on with it should not see this"
             )
@@ -64,19 +63,11 @@ class SessionPlayback(Playback):
     def describe(self, scene: int) -> ViewState:
         """Make what a page shows of a showing."""
         line, cue, trial, stimulus = self._showings[max(scene - 1, 0)]
-        protocol, display = self._protocol, self._protocol.display_model.display
-        style, lines = protocol.style(stimulus.look), []
-        if not stimulus.picture:
-            masks = stimulus.masks(protocol.display.lead_cells)
-            lines.append(cells_shown(line, masks, stimulus.text, under=True))
-        answer = self._progress.answers.get(trial.key)
+        protocol, display = self._replay.protocol, self._replay.protocol.display_model.display
+        answer = self._replay.progress.answer(trial)
         return ViewState(
-            title=f"{self._progress.plan.participant}: {protocol.name}",
+            title=f"{self._replay.content.plan.participant}: {protocol.name}",
             array=array_shown(display),
-            geometry=geometry_shown(style.geometry),
-            rows_shown=[] if stimulus.picture else rows_shown(style, display),
-            mapping=f"mapping: {style.mapping.name}",
-            lines=lines,
             place=trial.name,
             device="recording",
             facts=[
@@ -86,6 +77,7 @@ class SessionPlayback(Playback):
                 ("shown", stimulus.picture or stimulus.cells),
                 ("answer", "none" if answer is None else answer.data["answer"]),
             ],
+            **stimulus_shown(protocol, stimulus, line, display),
         )
 
     def _moment(self, event: Event) -> PlayedEvent:
@@ -97,5 +89,5 @@ class SessionPlayback(Playback):
             return PlayedEvent(event.t_s, kind, text)
         right = None
         if event.kind == "answer":
-            right = self._protocol.asks.correct(trial, event.data["answer"])
+            right = self._replay.protocol.asks.correct(trial, event.data["answer"])
         return PlayedEvent(event.t_s, kind, f"{trial.name}: {text}", right, trial.condition)

@@ -236,7 +236,8 @@ class Session:
             source = _open_answers(answers, conditions, progress)
             conditions = structs.replace(conditions, answers=source.name)
             if progress.runs:
-                say(f"resume: device {conditions.device}, answers {conditions.answers}")
+                known = f"device {conditions.device}, answers {conditions.answers}"
+                say(f"resume: {known}; {progress.done} trials have answers")
                 if datetime.fromisoformat(content.events[-1].wall) > datetime.now(UTC):
                     back = "times of day go back in the record, t_s does not"
                     say(f"clock: set back since the last run; {back}")

@@ -5,6 +5,7 @@ It does the same as `firmware/vbraille.h`, and has the same names for it.
 
 from __future__ import annotations
 
+import json
 import struct
 from typing import TYPE_CHECKING, Any, Final
 
@@ -22,10 +23,11 @@ from vbraille.devices.protocol import (
     WAITING,
     WATCHDOG_MS,
     ZERO,
+    Lines,
     State,
-    body_of,
     info_pieces,
     line_of,
+    read_info,
     state_body,
 )
 
@@ -36,7 +38,6 @@ if TYPE_CHECKING:
 
     from vbraille.display import Display
 
-_MOST_LINE: Final = 1024
 _MOST_AGE: Final = 50  # ticks without a FRAME
 _COUNTS_PER_TURN: Final = 65_536
 
@@ -49,15 +50,8 @@ def info_of(display: Display, *, buttons: int = 8, knobs: int = 4) -> dict[str, 
     ValueError
         If the protocol has no room for it.
     """
-    top, rate = display.levels - 1, round(display.rate_hz)
-    if display.rows * display.columns > 255 or not 1 <= top <= 1023:
-        raise ValueError("a device has at most 255 actuators and 1024 levels")
-    if rate < 50 or 1000 % rate or rate != display.rate_hz:
-        raise ValueError(
-            f"its rate is {display.rate_hz:g} Hz; it must divide 1000 and be 50 Hz or more"
-        )
-    axes = 2 if display.height_mm else 1
-    return {
+    top, axes = display.levels - 1, 2 if display.height_mm else 1
+    told = {
         "name": display.name,
         "rows": display.rows,
         "columns": display.columns,
@@ -65,7 +59,7 @@ def info_of(display: Display, *, buttons: int = 8, knobs: int = 4) -> dict[str, 
         "rest": display.rest_side,
         "top": top,
         "fast": -(-top * 65 // 100),
-        "rate": rate,
+        "rate": round(display.rate_hz),
         "counts_per_mm": [display.counts_per_mm] * axes,
         "travel_mm": [display.travel_mm, display.height_mm][:axes],
         "serial": "simulated",
@@ -73,6 +67,8 @@ def info_of(display: Display, *, buttons: int = 8, knobs: int = 4) -> dict[str, 
         "buttons": buttons,
         "knobs": knobs,
     }
+    read_info(json.dumps(told).encode())
+    return told
 
 
 class Controller:
@@ -129,7 +125,7 @@ class Controller:
         self._zero = (0, 0, 0)
         self._seen = (0, 0, 0)
         self._level_bytes = count if self.top <= 255 else (10 * count + 7) // 8
-        self._held = b""
+        self._lines = Lines()
 
     @property
     def at_rest(self) -> bool:
@@ -138,15 +134,15 @@ class Controller:
 
     def receive(self, chunk: bytes) -> None:
         """Take bytes from the host."""
-        *lines, held = (self._held + chunk).split(b"\0")
-        self._held = held[:_MOST_LINE]
-        for line in lines:
-            if line and not self._obey_line(line):
-                self.dropped += 1
+        damaged = self._lines.damaged
+        bodies = self._lines.bodies(chunk)
+        self.dropped += self._lines.damaged - damaged
+        for body in bodies:
+            self.dropped += not self._obey(body)
 
     def hang_up(self) -> None:
         """Forget a line that came in part: the port is gone."""
-        self._held = b""
+        self._lines.clear()
 
     def say(self, code: int, text: str) -> None:
         """Tell the host something; code 1 is a fault, until the next HELLO."""
@@ -186,9 +182,8 @@ class Controller:
         self.goal[:] = 0
         self.resting, self.waiting, self._armed = True, waiting, False
 
-    def _obey_line(self, line: bytes) -> bool:
-        body = body_of(line)
-        if body is None or len(body) > 3 + self._level_bytes:
+    def _obey(self, body: bytes) -> bool:
+        if len(body) > 3 + self._level_bytes:
             return False
         kind, size = body[0], len(body)
         if kind == HELLO and size == 2:

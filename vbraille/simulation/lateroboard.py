@@ -14,17 +14,14 @@ from vbraille.devices.latero.wire import (
     BLADES,
     BUTTONS,
     CONTROLLER,
-    DIO_OUT,
     FULL,
     FULLR0,
-    INTERFACE,
     NO_BUTTON,
     NO_IO,
     PAGE,
     POWERED_OFF,
     POWERED_ON,
     RAW,
-    READ,
     REST,
     WRITE,
     Answer,
@@ -35,12 +32,8 @@ from vbraille.devices.latero.wire import (
     parse_request,
 )
 
-# Version 1, revision 0, of both.
-_VERSION: Final = 0x0100
-# Registers of the controller, and of its I/O interface. The first is ours: which one switches the
-# real Latero's motor power is not published.
-STATUS: Final = 0x00
-DIO = 0x10
+_VERSION: Final = 0x0100  # version 1, revision 0, of both boards
+STATUS: Final = 0x00  # ours: which register switches the real one's power is not published
 _HALF: Final = 0x8000
 
 
@@ -70,16 +63,12 @@ class LateroBoard:
 
     def __init__(self, register: int | None = STATUS) -> None:
         self.levels = np.full(BLADES, REST, np.uint8)
-        self.powered = True
+        self.powered = self.interface = True
         self.encoders: tuple[int, int, int, int] = (0, 0, 0, 0)
-        self.buttons = 0
-        self.interface = True
-        self.encoder_errors = 0
+        self.buttons = self.encoder_errors = 0
         self.register = register
         self.fulls = self.raws = self.foreign = self.beyond = 0
         self._page = 0
-        self._dio_out = DIO_OUT
-        self._registers: dict[tuple[int, int], int] = {}
 
     @property
     def at_rest(self) -> bool:
@@ -100,49 +89,27 @@ class LateroBoard:
         if request.kind == RAW:
             self.raws += 1
             return pack_raw_answer(self._do(request))
-        self._dio_out = request.dio_out
         if request.kind == FULL:
             self.fulls += 1
             self._page ^= 1
             self.levels[:] = np.frombuffer(request.blades, np.uint8)
             self.beyond += int((self.levels > REST).sum())
-        return pack_answer(self._answer(request.sequence), FULLR0 + self._page)
-
-    def _answer(self, sequence: int) -> Answer:
-        interface = _VERSION | self.encoder_errors if self.interface else NO_IO
-        return Answer(
-            sequence=sequence,
-            dio_in=self._dio_in,
+        pressed = sum(mask for n, mask in enumerate(BUTTONS) if self.buttons >> n & 1)
+        answer = Answer(
+            sequence=request.sequence,
+            dio_in=NO_BUTTON & ~pressed if self.interface else 0,
             controller=self.status,
-            interface=interface,
+            interface=_VERSION | self.encoder_errors if self.interface else NO_IO,
             encoders=self.encoders,
             adc=(_HALF, _HALF, _HALF, _HALF),
         )
-
-    @property
-    def _dio_in(self) -> int:
-        if not self.interface:
-            return 0
-        pressed = sum(mask for n, mask in enumerate(BUTTONS) if self.buttons >> n & 1)
-        return NO_BUTTON & ~pressed
+        return pack_answer(answer, FULLR0 + self._page)
 
     def _do(self, request: LateroRequest) -> RawAnswer:
-        """Read or write a register; one that is not there holds what was written to it."""
-        board = request.command & (CONTROLLER | INTERFACE)
-        at = board, request.address
-        if request.command & WRITE:
-            self._registers[at] = request.data
-            if at == (CONTROLLER, self.register):
-                if request.data & POWERED_OFF:
-                    self.powered = False
-                elif request.data & POWERED_ON:
-                    self.powered = True
-            elif at == (INTERFACE, DIO):
-                self._dio_out = request.data
-        content = self._registers.get(at, 0)
-        if request.command & READ:
-            if at == (CONTROLLER, self.register):
-                content = self.status
-            elif at == (INTERFACE, DIO):
-                content = self._dio_in
-        return RawAnswer(request.sequence, request.command, request.address, content)
+        """Read or write the register of motor power; any other one holds 0."""
+        command, content = request.command, 0
+        if command & CONTROLLER and request.address == self.register:
+            if command & WRITE and request.data & (POWERED_OFF | POWERED_ON):
+                self.powered = not request.data & POWERED_OFF
+            content = self.status
+        return RawAnswer(request.sequence, command, request.address, content)

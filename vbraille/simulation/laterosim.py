@@ -95,11 +95,9 @@ class LateroSimulator:
         keys: Callable[[], Iterable[str]] = tuple,
         wait_s: float = 1.0,
     ) -> None:
-        self.board = LateroBoard()
-        self.carriage = carriage
-        self._say = say
+        self.board, self.carriage, self._say = LateroBoard(), carriage, say
         self._controls, self._keys = Controls(script), keys
-        self._wait_s = wait_s
+        self._wait_us = wait_s * 1e6
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             self._socket.bind(("127.0.0.1", port))
@@ -110,11 +108,11 @@ class LateroSimulator:
             ) from None
         self._socket.setblocking(False)
         self._begun_ns = time.monotonic_ns()
-        self._asked_us: int | None = None  # when it was asked last
-        self._first_us: int | None = None  # since the client came that asks now
-        self._ever_us: int | None = None  # since anybody has asked
+        self._ever_us: int | None = None  # when it was asked for the first time
+        # When the client that asks now came, and when it asked last.
+        self._came_us = self._asked_us = 0
         self._client: tuple[str, int] | None = None
-        self._was_at_rest, self._was_powered = True, True
+        self._was = True, True  # at rest, and powered
 
     @property
     def spec(self) -> str:
@@ -152,20 +150,17 @@ class LateroSimulator:
     def _note(self, client: tuple[str, int], now_us: int) -> None:
         """Note who has asked, and move the hand once it has waited for long enough."""
         if client != self._client:
-            self._client = client
+            self._client, self._came_us = client, now_us
+            self._ever_us = self._ever_us or now_us
             self._say(f"asked by {client[0]}:{client[1]}")
-        self._ever_us = now_us if self._ever_us is None else self._ever_us
-        self._first_us = now_us if self._first_us is None else self._first_us
         self._asked_us = now_us
-        if now_us - self._first_us >= self._wait_s * 1e6:
+        if now_us - self._came_us >= self._wait_us:
             self.carriage.set_out()
-        at_rest, powered = self.board.at_rest, self.board.powered
-        if powered != self._was_powered:
-            rest = "at rest" if at_rest else "not at rest"
-            self._say(f"motor power: {'on' if powered else f'off, blades {rest}'}")
-        elif at_rest and not self._was_at_rest and not powered:
-            self._say("blades: at rest")
-        self._was_at_rest, self._was_powered = at_rest, powered
+        was, now = self._was, (self.board.at_rest, self.board.powered)
+        self._was = now
+        if now[1] != was[1] or (now[0] != was[0] and not now[1]):
+            rest = "at rest" if now[0] else "not at rest"
+            self._say(f"motor power: {'on' if now[1] else 'off'}, blades {rest}")
 
     def _mind(self, now_us: int) -> None:
         """Press what is to be pressed, and let the hand go back once no client asks."""
@@ -176,8 +171,8 @@ class LateroSimulator:
                 if key in ("1", "2"):
                     self._say(self._controls.type(key, since_s))
             self.board.buttons = self._controls.buttons & ((1 << len(BUTTONS)) - 1)
-        if self._asked_us is not None and now_us - self._asked_us > GONE_S * 1e6:
-            self._asked_us = self._first_us = None
+        if self._client is not None and now_us - self._asked_us > GONE_S * 1e6:
+            self._client = None
             self.carriage.go_back(now_us * _NS_PER_US)
             if not self.board.at_rest:
                 self._say("no client asks, and blades are not at rest")

@@ -10,12 +10,10 @@ import math
 import random
 import select
 import time
-from collections import deque
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Final
 
-from vbraille.errors import check_range
 from vbraille.simulation.carriage import Carriage
 from vbraille.simulation.controller import Controller, info_of
 from vbraille.simulation.controls import Controls
@@ -69,11 +67,6 @@ class Faults:
         Way in which the device is built wrong; None if it is built right.
     seed
         Seed of the random draws.
-
-    Raises
-    ------
-    ValueError
-        If a value is out of range.
     """
 
     drop: float = 0.0
@@ -85,15 +78,9 @@ class Faults:
     defect: Defect | None = None
     seed: int = 1
 
-    def __post_init__(self) -> None:
-        for name in ("drop", "corrupt"):
-            check_range(name, getattr(self, name), 0, 1)
-        for name in ("hold_ms", "boot_s", "stall_s", "unplug_every_s"):
-            check_range(name, getattr(self, name), 0, math.inf)
-
 
 class _Way:
-    """One direction of the line: it loses, damages and holds back what is put into it."""
+    """A way along the line, from one end to the other; what comes is whole messages."""
 
     def __init__(self, faults: Faults, seed: int) -> None:
         self._faults, self._random = faults, random.Random(seed)
@@ -102,34 +89,29 @@ class _Way:
     def clear(self) -> None:
         """Lose all that is under way."""
         self._begun = b""
-        self._held: deque[tuple[int, bytes]] = deque()
+        self._held: list[tuple[int, bytes]] = []  # each with when it arrives
 
     def put(self, chunk: bytes, now_ns: int) -> None:
         """Send bytes along it."""
-        faults = self._faults
-        if faults.drop or faults.corrupt:
-            *lines, self._begun = (self._begun + chunk).split(b"\0")
-            chunk = b"".join(self._spoilt(line + b"\0") for line in lines)
-        hold_ns = round(faults.hold_ms * 1e6)
+        *lines, self._begun = (self._begun + chunk).split(b"\0")
+        hold_ns = round(self._faults.hold_ms * 1e6)
         # What is held goes out together when its time is over, as it does in a USB adapter.
         due_ns = -(-now_ns // hold_ns) * hold_ns if hold_ns else now_ns
-        self._held.append((due_ns, chunk))
+        self._held += [(due_ns, self._spoilt(line + b"\0")) for line in lines]
 
     def take(self, now_ns: int) -> bytes:
         """Return the bytes that have arrived."""
-        arrived = b""
-        while self._held and self._held[0][0] <= now_ns:
-            arrived += self._held.popleft()[1]
+        arrived = b"".join(line for due_ns, line in self._held if due_ns <= now_ns)
+        self._held = [(due_ns, line) for due_ns, line in self._held if due_ns > now_ns]
         return arrived
 
     def _spoilt(self, line: bytes) -> bytes:
         if self._random.random() < self._faults.drop:
             return b""
+        spoilt = bytearray(line)
         if self._random.random() < self._faults.corrupt:
-            spoilt = bytearray(line)
             spoilt[self._random.randrange(len(spoilt))] ^= 1 << self._random.randrange(8)
-            return bytes(spoilt)
-        return line
+        return bytes(spoilt)
 
 
 class Simulator:
@@ -177,26 +159,23 @@ class Simulator:
         keys: Callable[[], Iterable[str]] = tuple,
     ) -> None:
         self._faults = faults or Faults()
-        self._info = info_of(display)
-        self._placed = placed
+        self._info, self._placed = info_of(display), placed
         self._carriage = Carriage(display, hand, area)
         self._port, self._say, self._keys = port, say, keys
         self._controls = controls or Controls()
         self._in, self._out = _Way(self._faults, self._faults.seed), _Way(self._faults, -1)
-        self._ticks = 0
         self._begun_ns = time.monotonic_ns()
+        self._ticks = 0
         self._greeted_ns: int | None = None  # for the first time
-        self._last_frame_us = 0
-        self._is_stalled = self._is_open = False
-        # When it stalls or goes on, is unplugged or plugged in, and has started.
-        self._stall_ns = self._begun_ns + round(STALL_EVERY_S * _NS_PER_S)
+        self._was_open = False
+        # When it is unplugged or plugged in, and has started.
         self._plug_ns, self._started_ns = _NEVER_NS, 0
         self._start()
 
     def _start(self) -> None:
         """Make the controller anew, with nothing under way."""
         self.controller = controller = Controller(self._info, placed=self._placed)
-        self._greetings = self._frames = self._trips = 0
+        self._greetings = self._trips = 0
         self._in.clear()
         self._out.clear()
         defect = self._faults.defect
@@ -225,14 +204,18 @@ class Simulator:
             due_ns = max(due_ns + _TICK_NS, time.monotonic_ns())
             self._listen_until(due_ns)
             self._go_wrong(time.monotonic_ns())
-            self._hear()
             self._tick()
+            self._note()
+
+    def _is_stalled(self, now_ns: int) -> bool:
+        since_s = (now_ns - self._begun_ns) / _NS_PER_S
+        return since_s % (STALL_EVERY_S + self._faults.stall_s) >= STALL_EVERY_S
 
     def _listen_until(self, due_ns: int) -> None:
         """Take what the host sends until a time."""
         while (left_ns := due_ns - time.monotonic_ns()) > 0:
             port = self._port.descriptor
-            if self._is_stalled or port is None or not self._port.is_open:
+            if port is None or self._is_stalled(due_ns) or not self._port.is_open:
                 time.sleep(left_ns / _NS_PER_S)
                 return
             if not select.select((port,), (), (), left_ns / _NS_PER_S)[0]:
@@ -240,18 +223,19 @@ class Simulator:
             self._in.put(self._port.read(), time.monotonic_ns())
             self._hear()
 
+    def _hear(self) -> None:
+        now_ns = time.monotonic_ns()
+        chunk = self._in.take(now_ns)
+        if now_ns >= self._started_ns:
+            self.controller.receive(chunk)
+
     def _go_wrong(self, now_ns: int) -> None:
-        """Stall, start the board anew or unplug the device, as its faults say."""
-        faults = self._faults
-        if faults.stall_s and now_ns >= self._stall_ns:
-            self._is_stalled = not self._is_stalled
-            lasts_s = faults.stall_s if self._is_stalled else STALL_EVERY_S
-            self._stall_ns = now_ns + round(lasts_s * _NS_PER_S)
-        if faults.boot_s:
-            was_open, self._is_open = self._is_open, self._port.is_open
-            if self._is_open and not was_open:
+        """Start the board anew or unplug the device, as its faults say."""
+        if self._faults.boot_s:
+            was_open, self._was_open = self._was_open, self._port.is_open
+            if self._was_open and not was_open:
                 self._start()
-                self._started_ns = now_ns + round(faults.boot_s * _NS_PER_S)
+                self._started_ns = now_ns + round(self._faults.boot_s * _NS_PER_S)
                 self._say("the board starts")
         if now_ns < self._plug_ns:
             return
@@ -267,52 +251,40 @@ class Simulator:
             self._plug_ns = now_ns + round(UNPLUGGED_S * _NS_PER_S)
             self._say("unplugged")
 
-    def _hear(self) -> None:
-        controller, now_ns = self.controller, time.monotonic_ns()
-        chunk = self._in.take(now_ns)
-        if chunk and now_ns >= self._started_ns:
-            controller.receive(chunk)
-        if controller.greetings != self._greetings:
-            self._greetings = controller.greetings
-            self._greeted_ns = now_ns if self._greeted_ns is None else self._greeted_ns
-            self._say("greeted by a host")
-            if self._faults.unplug_every_s:
-                self._plug_ns = now_ns + round(self._faults.unplug_every_s * _NS_PER_S)
-        if controller.frames != self._frames:
-            self._frames, self._last_frame_us = controller.frames, self.now_us
-            self._carriage.set_out()
-
     def _tick(self) -> None:
+        self._hear()
         controller, now_us = self.controller, self.now_us
-        self._ticks += 1
-        self._move_controls()
         way_mm, y_mm, theta_rad = self._carriage.at(now_us * _NS_PER_US)
         off_mm = _OFF_PLACE_MM if self._faults.defect is Defect.OFF_PLACE else 0.0
         counts = self._info["counts_per_mm"]
         controller.x = round((way_mm + off_mm) * counts[0])
         controller.y = round(y_mm * counts[-1])
         controller.turn = round(theta_rad / math.tau * self._info["counts_per_turn"])
+        controller.buttons = self._controls.buttons
+        controller.knobs = [round(knob * _KNOB_TOP) for knob in self._controls.knobs]
         line, now_ns = controller.tick(now_us), time.monotonic_ns()
-        if line and not self._is_stalled and now_ns >= self._started_ns:
+        if line and now_ns >= self._started_ns and not self._is_stalled(now_ns):
             self._out.put(line, now_ns)
         if message := self._out.take(now_ns):
             self._port.send(message)
-        if controller.trips != self._trips and controller.at_rest:
-            self._trips = controller.trips
-            after_ms = (now_us - self._last_frame_us) / 1000
-            self._say(
-                f"watchdog: trip {self._trips}, at rest {after_ms:.1f} ms after the last frame"
-            )
 
-    def _move_controls(self) -> None:
-        """Have buttons and knobs stand as the script and the keys have moved them."""
-        controls, since_s = self._controls, 0.0
-        if self._greeted_ns is not None:
-            since_s = (time.monotonic_ns() - self._greeted_ns) / _NS_PER_S
-            controls.advance(since_s)
-        if self._ticks % _KEYS_EVERY == 0:
-            for key in self._keys():
-                if said := controls.type(key, since_s):
-                    self._say(said)
-        self.controller.buttons = controls.buttons
-        self.controller.knobs = [round(knob * _KNOB_TOP) for knob in controls.knobs]
+    def _note(self) -> None:
+        """Tell what has happened, and move the hand, the buttons and the knobs."""
+        controller, now_ns = self.controller, time.monotonic_ns()
+        if controller.greetings != self._greetings:
+            self._greetings = controller.greetings
+            self._greeted_ns = self._greeted_ns or now_ns
+            self._say("greeted by a host")
+            if self._faults.unplug_every_s:
+                self._plug_ns = now_ns + round(self._faults.unplug_every_s * _NS_PER_S)
+        if controller.trips != self._trips:
+            self._trips = controller.trips
+            self._say(f"watchdog: trip {self._trips}")
+        if controller.frames:
+            self._carriage.set_out()
+        since_s = (now_ns - (self._greeted_ns or now_ns)) / _NS_PER_S
+        self._controls.advance(since_s if self._greeted_ns else -1.0)
+        self._ticks += 1
+        for key in self._keys() if self._ticks % _KEYS_EVERY == 0 else ():
+            if said := self._controls.type(key, since_s):
+                self._say(said)

@@ -14,27 +14,55 @@ if TYPE_CHECKING:
 
 
 class BlockKind(Enum):
-    """Role of a block in its text."""
+    """Role of a block in its text.
+
+    Attributes
+    ----------
+    HEADING
+        The title of a part; its level is 1 for the largest parts.
+    ITEM
+        An item of a list; its level is 1 in a list that stands in no other.
+    ROW
+        A row of a table.
+    LINE
+        A line that begins where the source begins it: of verse, of code, of a braille file.
+    QUOTE
+        A paragraph that is quoted; its level is 1 where no other quotation is around it.
+    NOTE
+        A footnote or an endnote, at the place where its format has it.
+    PAGE
+        The place where a page begins, of print or of a braille file; `page_number` is its number.
+    """
 
     PARAGRAPH = "paragraph"
     HEADING = "heading"
-    """The title of a part; its level is 1 for the largest parts."""
     ITEM = "item"
-    """An item of a list; its level is 1 in a list that stands in no other."""
     ROW = "row"
-    """A row of a table."""
     LINE = "line"
-    """A line that begins where the source begins it: of verse, of code, of a braille file."""
     QUOTE = "quote"
-    """A paragraph that is quoted; its level is 1 where no other quotation is around it."""
     NOTE = "note"
-    """A footnote or an endnote, at the place where its format has it."""
     PAGE = "page"
-    """The place where a page begins, of print or of a braille file; `page_number` is its number."""
 
 
 class MarkKind(Enum):
-    """Kind of a mark on a part of a block's text."""
+    """Kind of a mark on a part of a block's text.
+
+    Attributes
+    ----------
+    CODE
+        Computer code.
+    LANGUAGE
+        Text in another language than the block's; the target is its tag, such as "fr".
+    LINK
+        A link; the target is an address, or "#" and the name of an anchor of this source.
+    NOTE
+        A reference to a note; the target is "#" and the name of the note's anchor.
+    IMAGE
+        The text that stands for a picture; of a tactile one that the source shows as a figure, the
+        target says which file that is, in the way of the source.
+    UNSHOWN
+        A remark on something that cannot be shown; the target is what it is, such as "formula".
+    """
 
     ITALIC = "italic"
     BOLD = "bold"
@@ -42,18 +70,11 @@ class MarkKind(Enum):
     SUPERSCRIPT = "superscript"
     SUBSCRIPT = "subscript"
     CODE = "code"
-    """Computer code."""
     LANGUAGE = "language"
-    """Text in another language than the block's; the target is its tag, such as "fr"."""
     LINK = "link"
-    """A link; the target is an address, or "#" and the name of an anchor of this source."""
     NOTE = "note"
-    """A reference to a note; the target is "#" and the name of the note's anchor."""
     IMAGE = "image"
-    """The text that stands for a picture; of a tactile one that the source shows as a figure, the
-    target says which file that is, in the way of the source."""
     UNSHOWN = "unshown"
-    """A remark on something that cannot be shown; the target is what it is, such as "formula"."""
 
 
 class Mark(msgspec.Struct, frozen=True):
@@ -78,11 +99,10 @@ class Mark(msgspec.Struct, frozen=True):
 def cut_marks(marks: Iterable[Mark], start: int, stop: int, at: int = 0) -> tuple[Mark, ...]:
     """Marks on a part of a text, as they are where the part begins at an index."""
     return tuple(
-        Mark(
-            mark.kind,
-            max(mark.start, start) - start + at,
-            min(mark.end, stop) - start + at,
-            mark.target,
+        msgspec.structs.replace(
+            mark,
+            start=max(mark.start, start) - start + at,
+            end=min(mark.end, stop) - start + at,
         )
         for mark in marks
         if mark.start < stop and mark.end > start

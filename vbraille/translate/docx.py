@@ -88,6 +88,20 @@ class _Docx(Document):
                 self._paragraph(element, into)
             case "tbl":
                 self._table(element, into.add("table"))
+            case "tr":
+                is_head = _value(element, "trPr/tblHeader", "0") not in _OFF
+                line = (into.add("thead") if is_head else into).add("tr")
+                before = _value(element, "trPr/gridBefore")
+                if whole(before, 0) > 0:
+                    line.add("td", colspan=before)
+                self.inner(element, line, {})
+            case "tc":
+                goes_on = _value(element, "tcPr/vMerge", "restart") != "restart"
+                columns = _value(element, "tcPr/gridSpan")
+                cell = into.add("above" if goes_on else "td", colspan=columns)
+                self.inner(element, cell, {})
+                cell.children += [self._begun] if self._begun else []
+                self._begun = None
             case "r":
                 look = look | self.look_of(_look_of(element))
                 for child in element.elements:
@@ -153,28 +167,13 @@ class _Docx(Document):
             into.children.append(block)
 
     def _table(self, element: Element, table: Element) -> None:
-        """Read a table; a cell that goes on from the one above widens that."""
+        """Read a table, whose first row may be its head by the table's look."""
+        self.inner(element, table, {})
         look = _find(element, "tblPr/tblLook")
-        usual = look.get("firstRow", str(_hexadecimal(look.get("val")) >> 5 & 1))
-        rows = list(self.within(element, "tr"))
-        above: dict[int, Element] = {}
-        for row in rows:
-            usual = usual if row is rows[0] is not rows[-1] else "0"
-            is_head = _value(row, "trPr/tblHeader", usual) not in _OFF
-            line = (table.add("thead") if is_head else table).add("tr")
-            column = max(whole(_value(row, "trPr/gridBefore"), 0), 0)
-            if column:
-                line.add("td", colspan=str(column))
-            for cell in self.within(row, "tc"):
-                columns = max(whole(_value(cell, "tcPr/gridSpan")), 1)
-                goes_on = _value(cell, "tcPr/vMerge", "restart") != "restart"
-                if goes_on and column in above:
-                    rowspan = whole(above[column].get("rowspan")) + 1
-                    above[column].attributes["rowspan"] = str(rowspan)
-                else:
-                    above[column] = line.add("td", colspan=str(columns))
-                    self.inner(cell, above[column], {})
-                column += columns
+        first = look.get("firstRow", str(_hexadecimal(look.get("val")) >> 5 & 1))
+        if first not in _OFF and len(table.children) > 1:
+            head = Element("thead")
+            head.children, table.children = table.children[:1], [head, *table.children[1:]]
 
     def _field(self, mark: Element, into: Element) -> None:
         """Begin a field, its text, or its end."""

@@ -54,9 +54,11 @@ def table_blocks(
     """
     elements = list(_rows(table))
     rows = [
-        [_cell(each, read) for each in row.elements if each.name in ("td", "th")]
+        [_cell(each, read) for each in row.elements if each.name in ("td", "th", "above")]
         for row, _ in elements
     ]
+    grid = _grid(rows)
+    rows = [[cell for cell in row if cell.element.name != "above"] for row in rows]
     cells = [cell for row in rows for cell in row]
     kinds = [block.kind for cell in cells for block in cell.blocks]
     if lays_out or len(cells) <= 1 or any(kind in _LAYING_OUT for kind in kinds):
@@ -65,7 +67,7 @@ def table_blocks(
         return
     texts = {cell.element.get("id"): cell.whole.text for cell in cells}
     headers: dict[int, str] = {}
-    for (_, is_head), row, line in zip(elements, rows, _grid(rows), strict=True):
+    for (_, is_head), row, line in zip(elements, rows, grid, strict=True):
         yield from (b for cell in row for b in cell.blocks if b.kind is BlockKind.PAGE)
         shown = line[:1] if len(set(map(id, line))) == 1 else line
         if not any(cell is not None and cell.whole.text for cell in shown):
@@ -113,6 +115,8 @@ def _grid(rows: list[list[_Cell]]) -> list[list[_Cell | None]]:
                 column += 1
             spanned = cell.spans("colspan")
             columns = range(column, column + (spanned if column + spanned <= _MOST else 1))
+            if cell.element.name == "above":  # of a word processor: the cell above goes on
+                cell = lines[number - 1].get(column, cell)
             for line in lines[number : number + cell.spans("rowspan")]:
                 line.update(dict.fromkeys(columns, cell))
             column = columns.stop

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import posixpath
 import re
 from itertools import count
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import unquote
 
@@ -12,7 +12,7 @@ from vbraille.translate.blocks import Block, BlockKind, Mark, MarkKind, cut_mark
 from vbraille.translate.encodings import tidy
 from vbraille.translate.formulas import formula_text
 from vbraille.translate.grids import EMPHASES, joined, table_blocks
-from vbraille.translate.numbering import BULLET, list_markers
+from vbraille.translate.numbering import BULLET, list_markers, whole
 from vbraille.translate.spellings import lowered, raised
 from vbraille.translate.trees import Element, inside, names, read_tree
 
@@ -22,28 +22,9 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 _NAMES = names("html")
-_EMPHASES = {name: kind for kind in MarkKind if kind.value in _NAMES for name in _NAMES[kind.value]}
-_STYLES = {
-    "font-style:italic": MarkKind.ITALIC,
-    "font-weight:bold": MarkKind.BOLD,
-    "text-decoration:underline": MarkKind.UNDERLINE,
-    "vertical-align:super": MarkKind.SUPERSCRIPT,
-    "vertical-align:sub": MarkKind.SUBSCRIPT,
-}
 _SMALL = {MarkKind.SUPERSCRIPT: raised, MarkKind.SUBSCRIPT: lowered}
-_UNSHOWN = {
-    "canvas": "drawing",
-    "audio": "sound",
-    "video": "film",
-    "object": "embedded object",
-    "embed": "embedded object",
-    "iframe": "embedded page",
-    "select": "form field",
-    "textarea": "form field",
-}
+_EMPHATIC = (BlockKind.HEADING, BlockKind.QUOTE)
 _WORD_NOTE = re.compile(r"#_(?:ftn|edn)\d+$")
-# Quotation marks of quotations and of those in them, by language; English ones elsewhere.
-_QUOTES = {"de": "„“‚‘", "fr": "«»“”", "es": "«»“”", "it": "«»“”", "ru": "«»„“", "pl": "„”«»"}
 _BLANKS = re.compile(r"[\t\r\n\f][ \t\r\n\f]*| [ \t\r\n\f]+")  # but single spaces
 _PLAIN = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
 _LONGEST_NUMBER = 6  # of a note, with its brackets
@@ -149,7 +130,7 @@ class Walker:
         self._blank = False
         self._text += text
 
-    def _add_apart(self, text: str, kind: MarkKind | None = None, target: str = "") -> None:
+    def _add_apart(self, text: str, kind: MarkKind, target: str = "") -> None:
         """Add text with blanks around it, and a mark on it.
 
         A picture of one letter may be the first of a word.
@@ -157,8 +138,7 @@ class Walker:
         apart = kind is not MarkKind.IMAGE or len(text) > 1
         self._blank = self._blank or apart
         self._add(text)
-        if kind is not None:
-            self._marks.append(Mark(kind, len(self._text) - len(text), len(self._text), target))
+        self._marks.append(Mark(kind, len(self._text) - len(text), len(self._text), target))
         self._blank = apart
 
     def _unshown(self, what: str, label: str = "") -> None:
@@ -173,32 +153,27 @@ class Walker:
 
     def _end(self) -> None:
         """Write the block, the lines in it and the pages that begin in it."""
-        text, pages, marks, role = "".join(self._text), iter(self._pages), self._marks, self._role
+        # A page begins after a word that it cuts.
+        text = re.sub(r"\f(\S+)", "\\1\f", "".join(self._text).removesuffix("\n"))
+        pages, marks, role = iter(self._pages), self._marks, self._role
         self._begin()
         start, written, inner = 0, False, role
-        if role.lines:
-            start = int(text.startswith("\n"))
-            text = text[start:].removesuffix("\n")
-        if not text.strip("\n ") and not (role.lines and text):
-            return
-        text = re.sub(r"\f(\S+)", "\\1\f", text)  # a page begins after a word that it cuts
         for piece in re.split("([\n\f])", text):
             if piece == "\f":
                 self._put(next(pages))
             elif piece != "\n" and (piece.strip(" ") or (role.lines and written)):
-                block = _clipped(piece, start, marks, inner)
                 goes_on = written and inner is role and role.kind is not BlockKind.LINE
-                self._put(block.replace(continues=goes_on))
+                self._put(_clipped(piece, start, marks, inner).replace(continues=goes_on))
                 written = True
             elif written and role.kind in (BlockKind.PARAGRAPH, BlockKind.ITEM):
                 inner = role._replace(kind=BlockKind.LINE, level=0)
             start += len(piece)
 
     def _put(self, block: Block) -> None:
-        last = self._blocks[-1] if self._blocks else None
-        if last is not None and last.text == block.text and _is_picture(last):
-            return  # a caption that repeats the words of its picture
         if block.text and block.kind is not BlockKind.PAGE:
+            last = self._blocks[-1] if self._blocks else Block("")
+            if last.text == block.text and Mark(MarkKind.IMAGE, 0, len(last.text)) in last.marks:
+                return  # a caption that repeats the words of its picture
             if self._broken and block.kind not in (BlockKind.HEADING, BlockKind.NOTE):
                 self._blocks.append(Block(self._spell("* * *")))
             self._broken = False
@@ -229,15 +204,16 @@ class Walker:
 
     def _walk(self, element: Element) -> None:
         name, words = element.name, element.words
-        is_note = bool(words & _NAMES["notes"])
-        hidden = _is_hidden(element) and not is_note and not words & _NAMES["note_lists"]
+        is_note, lists_notes = words & _NAMES["notes"], words & _NAMES["note_lists"]
+        hidden = _is_hidden(element) and not is_note and not lists_notes
         if hidden or name in _NAMES["skipped"] or words & _NAMES["back"]:
             return
         if name == "pagenum" or words & _NAMES["pages"]:
             self._page(element)
             return
-        before, is_block = self._role, name in _NAMES["blocks"]
-        if is_block or is_note:
+        before = self._role
+        is_block = name in _NAMES["blocks"] or is_note or "heading" in words
+        if is_block:
             self._end()
         identity = element.get("id") or (element.get("name") if name == "a" else "")
         if identity:
@@ -247,7 +223,7 @@ class Walker:
             self._become(language="" if _same(tag, self._language) else tag)
         if is_note:
             self._become(BlockKind.NOTE)
-        elif words & _NAMES["note_lists"]:
+        elif lists_notes:
             self._become(notes=True)
         start, known = self._next, len(self._marks)
         self._read(element, words)
@@ -256,10 +232,11 @@ class Walker:
                 self._marks.append(Mark(MarkKind.LANGUAGE, start, len(self._text), tag))
             refers = any(mark.kind is MarkKind.NOTE for mark in self._marks[known:])
             for kind in _emphases(element, words):
-                if kind in _SMALL and not refers:
+                if kind in _SMALL and refers:
+                    continue
+                if kind in _SMALL:
                     self._text[start:] = _SMALL[kind]("".join(self._text[start:]))
-                if kind not in _SMALL or not refers:
-                    self._marks.append(Mark(kind, start, len(self._text)))
+                self._marks.append(Mark(kind, start, len(self._text)))
         if is_block:
             self._end()
         self._role, role = before, self._role
@@ -272,26 +249,22 @@ class Walker:
         match element.name:
             case "br":
                 self._blank = False
-                inline = role.kind in (BlockKind.HEADING, BlockKind.ROW)
-                self._add(" " if inline else "\n")
-                return
+                self._add(" " if role.kind is BlockKind.HEADING else "\n")
             case "hr":
                 self._broken = bool(self._blocks)
             case "del" if element.text.strip():
-                self._add_apart(self._spell("[deleted:"))
-                self._inside(element)
-                self._blank = False
-                self._add(self._spell("]"))
+                self._blank = True
+                self._surround(element, self._spell("[deleted:") + " ", self._spell("]"))
                 self._blank = True
                 return
             case "q":
                 language = (role.language or self._language).partition("-")[0].lower()
-                marks = _QUOTES.get(language, "“”‘’")[2 * role.quoting :]
+                marks = _NAMES["quotes"].get(language, "“”‘’")[2 * role.quoting :]
                 self._become(quoting=not role.quoting)
-                self._surround(element, marks)
+                self._surround(element, marks[0], marks[1])
                 return
             case "rt":
-                self._surround(element, "()")
+                self._surround(element, "(", ")")
                 return
             case "lic" if self._text:
                 self._blank = False
@@ -323,8 +296,7 @@ class Walker:
                 self._link(element, words)
                 return
             case "input" if kind == "checkbox" and "disabled" in element.attributes:
-                self._add("☒" if "checked" in element.attributes else "☐")
-                self._blank = True
+                self._say("☒ " if "checked" in element.attributes else "☐ ")
             case "input" if kind not in ("image", "hidden"):
                 self._unshown("form field", _label(element) or element.get("value"))
             case "img" | "input" if kind != "hidden":
@@ -338,33 +310,26 @@ class Walker:
             case "table":
                 self._table(element, words)
                 return
-            case "select" | "textarea" | "iframe" as name:
-                self._unshown(_UNSHOWN[name], _label(element))
-                return
-            case name if name in _UNSHOWN:
-                self._unshown(_UNSHOWN[name], _label(element))
+            case name if name in _NAMES["unshown"]:
+                self._unshown(_NAMES["unshown"][name], _label(element))
+                if name in ("select", "textarea", "iframe"):
+                    return
             case name if "heading" in words or re.fullmatch("h[1-6]", name):
-                self._end()
-                level = element.get("level") or element.get("aria-level") or name[1:]
-                level = int(level) if level.isdecimal() and int(level) > 0 else 2
-                self._become(BlockKind.HEADING, min(level, 9))
-                self._inside(element)
-                self._end()
-                return
+                level = whole(element.get("aria-level") or name[1:], 2)
+                self._become(BlockKind.HEADING, min(max(level, 1), 9))
             case name if name.startswith("level"):
-                depth = int(name[5:]) if name[5:].isdecimal() else role.sections + 1
-                self._become(sections=depth)
+                self._become(sections=whole(name[5:], role.sections + 1))
             case _ if "img" in words and _label(element):
                 self._add_apart(_label(element), MarkKind.IMAGE)
                 return
         self._inside(element)
 
-    def _surround(self, element: Element, marks: str) -> None:
+    def _surround(self, element: Element, before: str, after: str) -> None:
         """Read an element between two marks."""
-        self._say(marks[0])
+        self._add(before)
         self._inside(element)
         self._blank = False
-        self._say(marks[1])
+        self._add(after)
 
     def _item(self, element: Element) -> None:
         lead = element.attributes.get("data-marker")
@@ -373,8 +338,8 @@ class Walker:
         if self._role.notes or self._role.kind is BlockKind.NOTE:
             self._become(BlockKind.NOTE, notes=False)
         else:
-            level = element.get("data-level") or max(self._role.items, 1)
-            self._become(BlockKind.ITEM, int(level))
+            level = whole(element.get("data-level"), max(self._role.items, 1))
+            self._become(BlockKind.ITEM, level)
         self._inside(element)
         self._end()
         self._lead = ""
@@ -398,16 +363,14 @@ class Walker:
                 told = f"{self._spell('[')}{told}{self._spell(']')}"
             self._text[start:] = told
         elif in_note and not re.search(r"\w", told):  # an arrow back to the text
-            self._text[:] = "".join(self._text[:start]).rstrip(" ")
+            del self._text[start:]
             return
         elif in_note and not start and len(told) < _LONGEST_NUMBER:  # the number of the note
             self._blank = True
             return
         kind = MarkKind.NOTE if refers else MarkKind.LINK
-        if self._member and (address.startswith("#") or ":" not in address):
-            address = "#" + inside(self._member, address)
-        elif address.startswith("#"):
-            address = unquote(address)
+        if address.startswith("#") or (self._member and ":" not in address):
+            address = "#" + inside(self._member, address).removeprefix("#")
         self._marks.append(Mark(kind, start, len(self._text), address))
 
     def _anchor(self, name: str) -> str:
@@ -420,10 +383,10 @@ class Walker:
         decoration = "alt" in element.attributes and not said
         if path.lower().endswith((".scene", ".svg")) and ":" not in path and not decoration:
             self._end()
-            title = said or unquote(posixpath.splitext(posixpath.basename(path))[0])
+            title = self._spell(f"figure: {said or unquote(PurePosixPath(path).stem)}")
             self._become(BlockKind.LINE)
             target = inside(self._member, path) if self._member else path
-            self._add_apart(self._spell(f"figure: {title}"), MarkKind.IMAGE, target)
+            self._add_apart(title, MarkKind.IMAGE, target)
             self._end()
         elif said:
             self._add_apart(said, MarkKind.IMAGE)
@@ -432,16 +395,14 @@ class Walker:
 
     def _svg(self, element: Element) -> None:
         title = _label(element) or element.said("title")
-        texts = [text for each in element.iter("text") if (text := " ".join(each.text.split()))]
+        text = " ".join(" ".join(each.text for each in element.iter("text")).split())
         pictures = [_label(picture) for picture in element.iter("image")]
         if title:
             self._add_apart(title, MarkKind.IMAGE)
-        for text in texts if not title else ():
-            self._add_apart(text)
-        if pictures and not title and not texts:
-            self._unshown("picture", pictures[0])
-        elif not title and not texts:
-            self._unshown("drawing")
+        elif text:
+            self._say(f" {text} ")
+        else:
+            self._unshown("picture" if pictures else "drawing", "".join(pictures[:1]))
 
     def _math(self, element: Element) -> None:
         text = formula_text(element)
@@ -480,12 +441,15 @@ class Walker:
 
 def _emphases(element: Element, words: set[str]) -> list[MarkKind]:
     """Kinds of emphasis that an element gives its text."""
-    named = [element.name]
+    named = {element.name}
     if element.name == "span":
-        named += [word for word in words if word.startswith(("sub", "sup"))]
+        named |= {word for word in words if word.startswith(("sub", "sup"))}
     style = element.get("style").lower().replace(" ", "")
-    kinds = [_EMPHASES[name] for name in named if name in _EMPHASES]
-    return kinds + [kind for css, kind in _STYLES.items() if css in style]
+    return [
+        MarkKind(kind)
+        for kind, told in _NAMES["emphases"].items()
+        if any(name in named or (":" in name and name in style) for name in told.split())
+    ]
 
 
 def _clipped(text: str, start: int, marks: list[Mark], role: _Role) -> Block:
@@ -505,15 +469,6 @@ def _clipped(text: str, start: int, marks: list[Mark], role: _Role) -> Block:
     kept = [mark for mark in kept if mark.kind is not MarkKind.LANGUAGE or mark.target != language]
     kept.sort(key=lambda mark: (mark.start, -mark.end))
     return Block(body, role.kind, role.level, None, tuple(kept), language, group=role.group)
-
-
-_EMPHATIC = (BlockKind.HEADING, BlockKind.QUOTE)
-
-
-def _is_picture(block: Block) -> bool:
-    """Tell whether a block is the words of a picture and nothing else."""
-    marks = [(mark.kind, mark.start, mark.end) for mark in block.marks]
-    return (MarkKind.IMAGE, 0, len(block.text)) in marks and block.text != ""
 
 
 def _label(element: Element) -> str:

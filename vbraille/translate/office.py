@@ -203,14 +203,6 @@ class Document:
         """Read an element of the format's own, all of whose kinds are known here."""
         raise NotImplementedError
 
-    def within(self, holder: Element, name: str) -> Iterator[Element]:
-        """Elements of a name in another, whatever holds them there that is not skipped."""
-        for element in holder.elements:
-            if element.name == name:
-                yield element
-            elif element.name not in self.names["skipped"]:
-                yield from self.within(element, name)
-
     def look_of(self, own: Look, most: int = _LONGEST_CHAIN) -> Look:
         """A look, with all that the styles say that it is based on."""
         style = self.styles.get(own.get("based", ""))

@@ -19,7 +19,7 @@ _PARAGRAPH = re.compile(r"\n[ \t\u3000]*\n\s*|\f\s*|\u2029\s*")
 _BLANK = r"\t\n\r\u1680\u2000-\u2006\u2008-\u200a\u205f\u3000"
 _BLANKS = re.compile(f"[{_BLANK}][ {_BLANK}]*| [ {_BLANK}]+")
 # What told old printers to strike a character twice, or to underline it.
-_STRUCK = re.compile(r"_\b(?=.)|(?<=.)\b_|(.)\b(?=\1)".replace(r"\b", "\b"))
+_STRUCK = re.compile("_\b(?=.)|(?<=.)\b_|(.)\b(?=\\1)")
 # A word that a line's end cut, but not "pre-" before "and".
 _CUT = re.compile(r"(?<=\w)([-\u2010])\n[ \t]*(?!(?:and|or|to|und|oder|bis|et|ou)\b)(?=\w)")
 _ITEM = re.compile(
@@ -38,8 +38,7 @@ def read_text(
 def text_blocks(source: Source, text: str, *, keep_lines: bool = False) -> Iterator[Block]:
     """Blocks of a text."""
     text = _NEWLINE.sub("\n", text).replace("\u2007", "\u00a0").replace("\u202f", "\u00a0")
-    if "\b" in text:
-        text = _STRUCK.sub("", text)
+    text = _STRUCK.sub("", text)
     source.expected = len(text)
     if keep_lines:
         for line in text.rstrip("\n \t").split("\n"):
@@ -59,31 +58,26 @@ def _items(paragraph: str) -> Iterator[str]:
     the first or follows the last of its kind. Otherwise a line of prose can begin with either.
     """
     lines = paragraph.split("\n")
-    item, last, kind = [lines[0]], *_marker(lines[0])
-    for number, line in enumerate(lines[1:], 1):
-        value, its_kind = _marker(line)
-        first = value == 1 and (its_kind == "number" or _goes_on(lines[number + 1 :], its_kind))
-        after_colon = its_kind != "" and lines[number - 1].rstrip().endswith(":")
-        follows = its_kind == kind and value == last + (its_kind in ("number", "letter"))
-        if its_kind == "bullet" or (its_kind and (first or follows or after_colon)):
+    markers = [_marker(line) for line in lines]
+    item, last = lines[:1], markers[0]
+    for at in range(1, len(lines)):
+        kind, value = markers[at]
+        is_first = value == 1 and (kind == "number" or (kind, 2) in markers[at:])
+        follows = (kind, value - (value > 0)) == last
+        if kind == "bullet" or (
+            kind and (is_first or follows or lines[at - 1].rstrip().endswith(":"))
+        ):
             yield "\n".join(item)
-            item, last, kind = [], value, its_kind
-        item.append(line)
+            item, last = [], markers[at]
+        item.append(lines[at])
     yield "\n".join(item)
 
 
-def _goes_on(lines: list[str], kind: str) -> bool:
-    """Tell whether a later line has the second marker of a kind, as of a list of letters."""
-    return any(_marker(line) == (2, kind) for line in lines)
-
-
-def _marker(line: str) -> tuple[int, str]:
-    """Number of the item that a line begins, and the kind of its marker; (0, "") for none."""
+def _marker(line: str) -> tuple[str, int]:
+    """Kind of the marker of the item that a line begins, and its number; "" and 0 for none."""
     found = _ITEM.match(line)
-    if found is None:
-        return 0, ""
-    if found["number"]:
-        return int(found["number"]), "number"
+    if found is None or found.lastgroup is None:
+        return "", 0
     if found["letter"]:
-        return ord(found["letter"].lower()) - ord("a") + 1, "letter"
-    return 0, "bullet" if found["bullet"] else "dash"
+        return "letter", ord(found["letter"].lower()) - ord("a") + 1
+    return found.lastgroup, int(found["number"] or 0)

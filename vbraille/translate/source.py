@@ -196,7 +196,7 @@ class Source:
     def sha256(self) -> str:
         """SHA-256 of the bytes of the book, in hexadecimal."""
         self.stream.seek(0)
-        return hashlib.file_digest(self.stream, "sha256").hexdigest()
+        return hashlib.file_digest(self.stream, "sha256").hexdigest()  # type: ignore[arg-type]
 
     def close(self) -> None:
         """Let go of the file; blocks that were read stay."""

@@ -120,22 +120,42 @@ class _DamagedError(InputError):
     """A file is not the markup that it should be."""
 
 
-class _Builder:
-    """Target of lxml's parsers: builds a tree that is not too deep."""
+class _Tree:
+    """Tree of a file that is not too deep, built as a target of lxml's parsers.
 
-    def __init__(self, name: str, *, keep_case: bool) -> None:
-        self._name, self._keep_case = name, keep_case
+    Raises
+    ------
+    InputError
+        If the file is not what is parsed, or has more elements than a book has.
+    """
+
+    def __init__(self, content: bytes, name: str, *, xml: bool, keep_case: bool = False) -> None:
+        from lxml import etree
+
         self.root = Element("root")
         self.flattened = self._count = 0
+        self._name, self._keep_case = name, keep_case
         self._open = [self.root]
         self._text: list[str] = []  # in parts, as the parser cuts it
-
-    def _say(self) -> None:
-        self._open[-1].say("".join(self._text))
-        self._text = []
+        target: Any = self
+        if xml:
+            parser = etree.XMLParser(
+                target=target, resolve_entities=False, no_network=True, load_dtd=False
+            )
+        else:
+            parser = etree.HTMLParser(
+                target=target, huge_tree=True, no_network=True, encoding="utf-8"
+            )
+        try:
+            for start in range(0, len(content) or 1, 1 << 20):
+                parser.feed(content[start : start + (1 << 20)])
+            parser.close()
+        except (etree.LxmlError, AssertionError, ValueError) as error:
+            said = " ".join(str(error).split())
+            raise _DamagedError(f"{name} is damaged ({said}); get the book again") from None
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
-        self._say()
+        self.close()
         self._count += 1
         if self._count > MOST_ELEMENTS:
             raise InputError(
@@ -151,45 +171,19 @@ class _Builder:
         self._open.append(child)
 
     def end(self, _tag: str) -> None:
-        self._say()
+        self.close()
         self._open.pop()
 
     def data(self, text: str) -> None:
         self._text.append(text)
 
     def close(self) -> None:
-        pass
+        self._open[-1].say("".join(self._text))
+        self._text = []
 
     def _local(self, name: str) -> str:
         local = name.rpartition("}")[2].rpartition(":")[2]
         return local if self._keep_case else local.lower()
-
-
-def _parse(content: bytes, name: str, *, xml: bool, keep_case: bool = False) -> _Builder:
-    """Feed a parser in pieces.
-
-    Raises
-    ------
-    InputError
-        If it is not what is parsed, or has more elements than a book has.
-    """
-    from lxml import etree
-
-    builder: Any = _Builder(name, keep_case=keep_case)
-    if xml:
-        parser = etree.XMLParser(
-            target=builder, resolve_entities=False, no_network=True, load_dtd=False
-        )
-    else:
-        parser = etree.HTMLParser(target=builder, huge_tree=True, no_network=True, encoding="utf-8")
-    try:
-        for start in range(0, len(content) or 1, 1 << 20):
-            parser.feed(content[start : start + (1 << 20)])
-        parser.close()
-    except (etree.LxmlError, AssertionError, ValueError) as error:
-        said = " ".join(str(error).split())
-        raise _DamagedError(f"{name} is damaged ({said}); get the book again") from None
-    return builder
 
 
 def parse_xml(content: bytes, name: str) -> Element:
@@ -209,7 +203,7 @@ def parse_xml(content: bytes, name: str) -> Element:
     """
     if b"<!ENTITY" in content[:65_536]:
         raise InputError(f"{name} declares entities, which no book needs; get another copy")
-    return _parse(content, name, xml=True, keep_case=True).root.elements[0]
+    return _Tree(content, name, xml=True, keep_case=True).root.elements[0]
 
 
 def read_tree(
@@ -246,15 +240,15 @@ def read_tree(
     text = _XML_HEAD.sub("", text[:4096]) + text[4096:]
     try:
         unfolded = _ENTITY.sub(lambda found: html.unescape(found[0]), text) if xml else ""
-        built = _parse(unfolded.encode("utf-8", "replace"), name, xml=True)
+        tree = _Tree(unfolded.encode("utf-8", "replace"), name, xml=True)
     except _DamagedError:
-        built = _parse(text.encode("utf-8", "replace") or b" ", name, xml=False)
-    if built.flattened:
+        tree = _Tree(text.encode("utf-8", "replace") or b" ", name, xml=False)
+    if tree.flattened:
         note(
-            f"{name} nests elements more than {DEEPEST} deep; {built.flattened} are read as if "
+            f"{name} nests elements more than {DEEPEST} deep; {tree.flattened} are read as if "
             f"they were not nested"
         )
-    return built.root
+    return tree.root
 
 
 def _decoded(content: bytes, encoding: str | None) -> tuple[str, str]:

@@ -91,7 +91,7 @@ def test_a_request_is_read_as_it_was_written():
     number(request, 7)
     blades = bytes(range(64))
     request[15:79] = blades
-    assert parse_request(bytes(request)) == LateroRequest(FULL, 7, 0x1000, (0, 0, 0, 0), blades)
+    assert parse_request(bytes(request)) == LateroRequest(FULL, 7, blades)
     raw = parse_request(bytes(raw_request(0x21, 0x10, 3)))
     assert raw == LateroRequest(RAW, 0, command=0x21, address=0x10, data=3)
     assert parse_request(bytes(request[:99])) is None

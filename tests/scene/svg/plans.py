@@ -9,4 +9,4 @@ def element_of(found):
 
 
 def warned(found):
-    return [warning.split(": ", 2)[2] for warning in found.warnings]
+    return [warning.split(": ", 1)[1] for warning in found.warnings]

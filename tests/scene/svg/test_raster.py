@@ -5,8 +5,7 @@ import pytest
 
 from tests.tiers import heavy
 from vbraille.errors import InputError
-from vbraille.scene.blobs import dots_of
-from vbraille.scene.images import load_bitmaps
+from vbraille.scene.images import dots_of, load_bitmaps
 from vbraille.scene.patterns import Image, ImageDots
 from vbraille.scene.scene import Canvas, Scene
 

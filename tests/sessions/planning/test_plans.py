@@ -92,7 +92,7 @@ def test_blocks_are_balanced_over_participants_and_differ_in_a_second_session(tm
 
 
 def test_groups_and_a_table_of_orders(tmp_path):
-    text = TWO.format(more="") + '[order]\nkind = "table"\nfile = "orders.csv"\n'
+    text = TWO.format(more='orders = "orders.csv"')
     orders = "participant;first;second\nP01;rough;flat\nP02;flat;rough\n"
     protocol = load(tmp_path, text, orders_csv=orders)
     assert in_blocks(make_plan(protocol, "P01", 1))[0].condition == "rough"

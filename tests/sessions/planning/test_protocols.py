@@ -78,7 +78,7 @@ REFUSED = {
     "order": (MINI + "blocks = 2\norder = 'balanced'\n", 8, "blocks"),
     "rule": (MINI + "[rules]\nat_most_running = { colour = 2 }\n", 8, "colour"),
     "letters": (MINI + "[rules]\neach_letter = 1\n", 8, "a is shown"),
-    "given away": (MINI + "[practice]\ntrials = 1\nstrings = ['ac']\n", 7, "practice"),
+    "nothing to practise": (MINI + "[practice]\ntrials = 1\n", 7, "practice"),
     "question": (MINI + "[question]\nkind = 'which'\n", 8, "which"),
     "two right": (WIDTHS + "reference = 1.0\n", 9, "reference"),
     "measure": (MINI + "[analysis]\nmeasure = 'preferred'\n", 8, "identify"),

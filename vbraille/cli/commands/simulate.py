@@ -70,7 +70,7 @@ def serial(**chosen: Any) -> None:
     from vbraille.render import MODELS
     from vbraille.simulation.carriage import area_of
     from vbraille.simulation.controls import Controls, parse_moves
-    from vbraille.simulation.pty import Link, Port
+    from vbraille.simulation.pty import Port
     from vbraille.simulation.simulator import Defect, Faults, Simulator
     from vbraille.simulation.specs import parse_hand
 
@@ -99,7 +99,7 @@ def serial(**chosen: Any) -> None:
         hand = parse_hand(chosen["hand"], chosen["seed"])
         controls = Controls(parse_moves(chosen["press"]))
         with _running() as (stopped, keys):
-            port = Port(Link(chosen["link"]) if chosen["link"] else None)
+            port = Port(chosen["link"])
             try:
                 simulator = Simulator(
                     display, hand, port, say=say, faults=faults, placed=not chosen["unplaced"],

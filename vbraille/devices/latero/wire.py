@@ -30,7 +30,7 @@ ENCODER_ERRORS: Final = 0x000F
 NO_IO: Final = 0x0000
 # Commands of RAW.
 READ, WRITE = 0x01, 0x02
-CONTROLLER, INTERFACE = 0x10, 0x20
+CONTROLLER = 0x10  # which of the two boards
 
 _HEAD: Final = struct.Struct(">BBBH")
 _FULL: Final = struct.Struct(">H4H")
@@ -101,8 +101,6 @@ class LateroRequest:
         FULL, IO or RAW.
     sequence
         Number of the request; the author's client never sets it.
-    dio_out, dac
-        Digital and analogue outputs, of FULL and IO.
     blades
         Levels of the 64 blades, of FULL.
     command, address, data
@@ -111,8 +109,6 @@ class LateroRequest:
 
     kind: int
     sequence: int
-    dio_out: int = 0
-    dac: tuple[int, ...] = ()
     blades: bytes = b""
     command: int = 0
     address: int = 0
@@ -174,9 +170,8 @@ def parse_request(datagram: bytes) -> LateroRequest | None:
         return LateroRequest(kind, sequence, command=command, address=address, data=content)
     if kind not in (FULL, IO):
         return None
-    dio_out, *dac = _FULL.unpack_from(datagram, _HEAD.size)
     blades = datagram[BLADES_AT : BLADES_AT + BLADES] if kind == FULL else b""
-    return LateroRequest(kind, sequence, dio_out, tuple(dac), blades)
+    return LateroRequest(kind, sequence, blades)
 
 
 def pack_answer(answer: Answer, kind: int) -> bytes:

@@ -29,7 +29,6 @@ function readFrame(bytes) {
 const FLAGS = /** @type {[number, string][]} */ ([
   [1, "paused"],
   [2, "no place from the device"],
-  [8, "waits for its mark"],
   [16, "waits to be told that it is at the left stop"],
   [32, "resting"],
   [256, "the device is at rest by itself"],

@@ -15,13 +15,12 @@ from vbraille.scene.openlatero.elements import MOST_BYTES, Context, read_root
 from vbraille.scene.openlatero.making import SURFACE_MM, pattern_of
 from vbraille.scene.patterns import Group
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.traversal import placed_children
+from vbraille.scene.traversal import lines_of
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.scene.patterns import AnyPattern, Operation
-    from vbraille.scene.traversal import Steps
 
 
 def read_gen(path: Path, *, as_shown: bool = False) -> FoundScene:
@@ -68,13 +67,4 @@ def read_gen(path: Path, *, as_shown: bool = False) -> FoundScene:
         elements=elements,
         signals=context.signals,
     )
-    lines: dict[Steps, int] = {}
-    left: list[tuple[Steps, AnyPattern]] = [
-        (("elements", number), element) for number, element in enumerate(elements)
-    ]
-    while left:
-        steps, pattern = left.pop()
-        if id(pattern) in context.made:
-            lines[steps] = context.made[id(pattern)][1]
-        left += [((*steps, *more), child) for more, child in placed_children(pattern)]
-    return FoundScene(scene, lines, context.said())
+    return FoundScene(scene, lines_of(elements, context.made), context.remarks.said())

@@ -14,46 +14,41 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 from msgspec.structs import replace
 
 from vbraille.errors import InputError, needing_extras
-from vbraille.scene.dotting import rows_of
-from vbraille.scene.imagefiles import intensities_of
-from vbraille.scene.intersections import meeting_edges
-from vbraille.scene.joints import joints, rounding_radius_mm
+from vbraille.scene.geometry import joints, rounding_radius_mm, rows_of
+from vbraille.scene.imagefiles import ImageFile
 from vbraille.scene.measures import LEAST_MM, MOST_MM
 from vbraille.scene.openlatero.elements import Element
 from vbraille.scene.patterns import (
-    Circle,
-    Dots,
-    Fill,
-    Group,
-    Image,
-    Moving,
-    PathShape,
-    Polygon,
-    StraightLine,
-    Tile,
-)
-from vbraille.scene.signals import Direction, Speed, Switch
-from vbraille.scene.strokes import (
     Across,
     Along,
+    AxialGrating,
+    Circle,
+    Dots,
     DotStyle,
     Dotting,
-    MovingCue,
-    Stroke,
-    VertexMarkers,
-    Vibration,
-)
-from vbraille.scene.textures import (
-    AxialGrating,
+    Fill,
     Gradual,
+    Group,
+    Image,
     LinearGrating,
+    Moving,
+    MovingCue,
+    PathShape,
     Peak,
+    Polygon,
     RadialGrating,
     SignalLevel,
+    StraightLine,
+    Stroke,
+    Tile,
     TurnPeak,
     Uniform,
     UniformVibration,
+    VertexMarkers,
+    Vibration,
+    meeting_edges,
 )
+from vbraille.scene.signals import Direction, Speed, Switch
 from vbraille.sounds import read_sound
 from vbraille.wording import nearest
 
@@ -281,18 +276,13 @@ def _masked(mask: Element) -> Image | None:
         file.say(f"{name} is not there, and {beside} beside this file is taken")
         name = beside
     channel = "alpha" if file.attribute("type") == "alpha" else "gray"
-    columns = rows = 0
-
-    def seen(wide: int, high: int, _: object) -> tuple[int, int]:
-        nonlocal columns, rows
-        columns, rows = wide, high
-        return 1, 1
-
     try:
-        intensities_of(context.folder / name, channel, seen)
+        picture = ImageFile(context.folder / name)
+        picture.intensities(channel, 1, 1)
     except (InputError, OSError, ValueError) as error:
         file.say(f"its picture is left out: {_in(context.folder, error)}")
         return None
+    columns, rows = picture.columns, picture.rows
     # Usually the largest size that fits on the surface in the picture's shape.
     high = min(SURFACE_MM[1], SURFACE_MM[0] * rows / columns)
     fitting = (high * columns / rows, high)

@@ -6,63 +6,69 @@ import cmath
 import math
 import os
 import re
-from collections import defaultdict
 from dataclasses import dataclass
 from dataclasses import replace as changed
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
-from vbraille.scene.locations import FoundScene
+from vbraille.scene.locations import FoundScene, Remarks
 from vbraille.scene.measures import LEAST_MM
-from vbraille.scene.patterns import Circle, Fill, Group, PathShape, Polygon, StraightLine, Uniform
+from vbraille.scene.patterns import (
+    Circle,
+    Fill,
+    Group,
+    Label,
+    PathShape,
+    Polygon,
+    StraightLine,
+    Uniform,
+)
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.svg import outlines
 from vbraille.scene.svg.document import (
-    INKSCAPE,
-    MOST_ELEMENTS,
-    description_of,
-    id_of,
-    link_of,
-    name_of,
-    read_tree,
-    short,
-    target_of,
-    title_of,
-)
-from vbraille.scene.svg.labels import labels_of
-from vbraille.scene.svg.looks import LEAST_SHARE, ClassLook, dashes_of, fill_of, stroke_of
-from vbraille.scene.svg.outlines import MOST_POINTS, SHAPES, TOO_FAR
-from vbraille.scene.svg.styles import INITIAL, StyleSheets
-from vbraille.scene.svg.values import (
     BLACK,
+    INITIAL,
+    INKSCAPE,
+    LONGEST_TEXT,
+    MOST_ELEMENTS,
     PX_MM,
     AffineMap,
     Color,
+    StyleSheets,
     Units,
     about,
     affine,
     angle_of,
     color_of,
+    description_of,
     fit,
+    id_of,
+    link_of,
+    name_of,
     origin_of,
+    plain,
+    read_tree,
     share_of,
+    short,
+    target_of,
+    title_of,
     transform_of,
     turned,
     view_box_of,
 )
+from vbraille.scene.svg.looks import LEAST_SHARE, ClassLook, dashes_of, fill_of, stroke_of
+from vbraille.scene.svg.outlines import MOST_POINTS, SHAPES, TOO_FAR
+from vbraille.scene.traversal import lines_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
     from pathlib import Path
 
     from vbraille.scene.patterns import AnyPattern
-    from vbraille.scene.svg.document import Element
+    from vbraille.scene.svg.document import Box, Element, Point, Style
     from vbraille.scene.svg.outlines import Contour, Ring
-    from vbraille.scene.svg.styles import Style
-    from vbraille.scene.svg.values import Box, Point
-    from vbraille.scene.traversal import Steps
 
 # Elements that only stand in a drawing to be used, or say something about it.
 _SILENT = frozenset(
@@ -72,22 +78,21 @@ _SILENT = frozenset(
 _SHOWN = SHAPES | {"g", "a", "svg", "switch", "symbol", "use", "text"}
 _UNFELT = ("filter", "mask", "translate", "rotate", "scale")
 _OWN_BOXES = ("fill-box", "content-box", "stroke-box", "border-box")
+# The size of braille is the device's, not the drawing's, and is not known here. These are a
+# Latero's, which are among the largest: labels placed by them meet nothing on other devices.
+_CELL_MM, _HEIGHT_MM, _LINE_MM = 11.1, 9.0, 12.5
+_ANCHORS = {"start": 0.0, "middle": 0.5, "end": 1.0}
+# How far the foot of letters is above the place of a text, as a share of the height of a cell.
+_BASELINES = {"middle": 0.5, "central": 0.5, "hanging": 1.0, "text-before-edge": 1.0,
+              "text-top": 1.0}  # fmt: skip
+_PARTS = ("tspan", "a", "textPath", "tref")
 _MOST_DEPTH = 100
 _MOST_NESTED = 20  # groups that are kept one in another; deeper ones are parts of those around
 _MOST_LINKS = 10  # gradients that take their colours from others
 _MOST_CORNERS = 2000  # of a polygon
 _MOST_SCALE = 1e9
-_NAMED_LINES = 5
 _LANGUAGE = re.compile(r"[A-Za-z]{2,3}(?:-[A-Za-z0-9]{1,8})*")
 _XML_LANG = "{http://www.w3.org/XML/1998/namespace}lang"
-
-
-class DrawnNode(NamedTuple):
-    """A pattern, the line of its element, and the same of its parts."""
-
-    pattern: AnyPattern
-    line: int
-    parts: tuple[DrawnNode, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,6 +136,16 @@ class _Place:
     named: bool = True
 
 
+@dataclass(slots=True)
+class _Line:
+    """A line of a text: the place of its start, middle or end, its style and its characters."""
+
+    element: Element
+    style: Style
+    place: complex
+    text: str = ""
+
+
 def read_svg(path: Path, class_looks: Mapping[str, ClassLook] | None = None) -> FoundScene:
     """Read a drawing as a scene.
 
@@ -160,7 +175,7 @@ def read_svg(path: Path, class_looks: Mapping[str, ClassLook] | None = None) -> 
     root = read_tree(path)
     try:
         drawing = SvgDrawing(str(path), root, class_looks or {})
-        nodes = drawing.nodes()
+        elements = drawing.elements()
     except RecursionError:
         raise InputError(f"{path} has brackets nested too deep; simplify its styles") from None
     width, height = (round(one * PX_MM, 4) for one in drawing.size_px)
@@ -172,19 +187,12 @@ def read_svg(path: Path, class_looks: Mapping[str, ClassLook] | None = None) -> 
         canvas=canvas,
         title=title_of(root),
         description=description_of(root),
-        elements=tuple(node.pattern for node in nodes),
+        elements=tuple(elements),
     )
     language = root.get(_XML_LANG) or root.get("lang") or ""
     if _LANGUAGE.fullmatch(language):
         scene = replace(scene, language=language)
-    lines: dict[Steps, int] = {}
-    left: list[tuple[Steps, DrawnNode]] = [(("elements", n), node) for n, node in enumerate(nodes)]
-    while left:
-        steps, node = left.pop()
-        if node.line:
-            lines[steps] = node.line
-        left += [((*steps, "parts", n), part) for n, part in enumerate(node.parts)]
-    return FoundScene(scene, lines, drawing.warnings())
+    return FoundScene(scene, lines_of(scene.elements, drawing.made), drawing.warnings())
 
 
 def size_px(root: Element, style: Mapping[str, str], name: str) -> Point:
@@ -236,7 +244,8 @@ class SvgDrawing:
 
     def __init__(self, name: str, root: Element, class_looks: Mapping[str, ClassLook]) -> None:
         self._name, self._root, self._class_looks = name, root, class_looks
-        self._notes: dict[str, list[tuple[int, str]]] = defaultdict(list)
+        self._remarks = Remarks()
+        self.made: dict[int, tuple[AnyPattern, int]] = {}
         self._ids: dict[str, Element] = {}
         for element in root.iter():
             if own_id := element.get("id"):
@@ -258,7 +267,7 @@ class SvgDrawing:
         self.size_px = size_px(root, self._style, name)
         self._units = Units(self.size_px, self.size_px)
 
-    def nodes(self) -> list[DrawnNode]:
+    def elements(self) -> list[AnyPattern]:
         """Patterns of the whole drawing."""
         if self._style["display"] == "none":
             return []
@@ -272,28 +281,23 @@ class SvgDrawing:
         """Keep a remark on an element."""
         name, own_id = name_of(element) or "element", element.get("id")
         called = f"{name} {short(own_id)}" if own_id else name
-        self._notes[remark].append((element.sourceline or 0, called))
+        self._remarks.note(remark, element.sourceline or 0, called)
 
     def warnings(self) -> tuple[str, ...]:
         """All remarks, one sentence for the same one on several elements."""
-        said = []
-        for remark, places in self._notes.items():
-            (line, name), *others = places
-            sentence = f"line {line}: {name}: {remark}" if line else f"{name}: {remark}"
-            if others:
-                lines = [str(line) for line in sorted({line for line, _ in others})]
-                where = f"line{'s' * (len(lines) > 1)} {', '.join(lines[:_NAMED_LINES])}"
-                more = " and others" * (len(lines) > _NAMED_LINES)
-                sentence += f"; and {len(others)} more, in {where}{more}"
-            said.append(sentence)
-        said += [
+        unmet = [name for name in self._class_looks if name not in self._met]
+        return self._remarks.said() + tuple(
             f"nothing that is shown has the class, label or id {name}, which the scene speaks of"
-            for name in self._class_looks
-            if name not in self._met
-        ]
-        return tuple(said)
+            for name in unmet
+        )
 
-    def _inside(self, element: Element, place: _Place) -> list[DrawnNode]:
+    def _lined(self, element: Element, patterns: Iterable[AnyPattern]) -> list[AnyPattern]:
+        """Patterns, which the line of an element is kept of."""
+        found = [*patterns]
+        self.made |= {id(one): (one, element.sourceline or 0) for one in found}
+        return found
+
+    def _inside(self, element: Element, place: _Place) -> list[AnyPattern]:
         """Patterns of the elements in another."""
         if place.depth >= _MOST_DEPTH:
             raise InputError(
@@ -303,9 +307,9 @@ class SvgDrawing:
         children = list(element)
         if name_of(element) == "switch":
             children = [one for one in children if name_of(one) in _SHOWN and self._holds(one)][:1]
-        return [node for child in children for node in self._drawn(child, place)]
+        return [one for child in children for one in self._drawn(child, place)]
 
-    def _in_view(self, element: Element, place: _Place, size: Point) -> list[DrawnNode]:
+    def _in_view(self, element: Element, place: _Place, size: Point) -> list[AnyPattern]:
         """Patterns of the elements in a viewport at the origin, cut to it and fitted into it."""
         if place.style["overflow"] in ("hidden", "scroll"):
             ends = 0j, complex(size[0], 0.0), complex(*size), complex(0.0, size[1])
@@ -333,7 +337,7 @@ class SvgDrawing:
 
     def _drawn(
         self, element: Element, around: _Place, sizes: tuple[str | None, ...] = ()
-    ) -> list[DrawnNode]:
+    ) -> list[AnyPattern]:
         """Patterns of an element; ``sizes`` are the width and height that its use gives it."""
         self._elements += 1
         if self._elements > MOST_ELEMENTS:
@@ -384,16 +388,15 @@ class SvgDrawing:
         if not found or not kept:
             return found
         self._named.add(own_id)
-        line = element.sourceline or 0
-        (pattern, _, parts), *others = found
+        pattern, *others = found
         if others or pattern.title or pattern.id:
-            pattern, parts = Group(parts=tuple(node.pattern for node in found)), tuple(found)
+            pattern = Group(parts=tuple(found))
         words = replace(pattern, id=own_id, title=title, description=description)
-        return [DrawnNode(words, line, parts)]
+        return self._lined(element, [words])
 
     def _made(
         self, element: Element, name: str, place: _Place, sizes: tuple[str | None, ...]
-    ) -> list[DrawnNode]:
+    ) -> list[AnyPattern]:
         """Patterns of an element that is shown, without its title, description and id."""
         if name == "use":
             return self._of_use(element, place)
@@ -411,18 +414,84 @@ class SvgDrawing:
             self.note(element, f"{error}; it is left out")
             return []
 
-    def _of_text(self, element: Element, place: _Place) -> list[DrawnNode]:
-        """Labels of a text, one for each of its lines."""
+    def _of_text(self, element: Element, place: _Place) -> list[AnyPattern]:
+        """Labels of a text, one for each of its lines.
+
+        A label stands so that its cells end at the line's foot. Its length is not known before it
+        is translated; where the anchor is its middle or end, a cell for each character is taken.
+        Lines of a text stand at least as far apart as lines of braille.
+        """
         if place.cutting is not None:
             self.note(element, "a text does not cut; it is ignored")
             return []
-        labels = labels_of(self._sheets, self._ids, element, place.matrix, place.style, place.units)
-        return [
-            DrawnNode(replace(label, amplitude=round(place.strength, 4)), one.sourceline or 0)
-            for one, label in labels
-        ]
+        lines: list[_Line] = []
+        self._gather(element, place.style, place.units, lines)
+        along = cmath.rect(1.0, cmath.phase(place.matrix.p + place.matrix.q))
+        down = along * 1j
+        before: complex | None = None
+        found: list[AnyPattern] = []
+        for line in lines:
+            text = plain(line.text, LONGEST_TEXT)
+            if not text:
+                continue
+            share = _ANCHORS[line.style["text-anchor"]]
+            base = _BASELINES.get(line.style["dominant-baseline"], 0.0)
+            corner = place.matrix(line.place)
+            corner -= down * _HEIGHT_MM * (1 - base) + along * share * len(text) * _CELL_MM
+            if before is not None:
+                below = ((corner - before) / down).real
+                corner += down * (_LINE_MM - below if 0 < below < _LINE_MM else 0.0)
+            before = corner
+            label = Label(
+                text=text,
+                place_mm=(round(corner.real, 4) + 0.0, round(corner.imag, 4) + 0.0),
+                angle_deg=round(math.degrees(cmath.phase(along)), 4) + 0.0,
+                amplitude=round(place.strength, 4),
+            )
+            found += self._lined(line.element, [label])
+        return found
 
-    def _of_use(self, element: Element, place: _Place) -> list[DrawnNode]:
+    def _gather(self, element: Element, style: Style, units: Units, lines: list[_Line]) -> None:
+        """Add the lines of a text or a part of it, which begins one where it has a place."""
+        before = lines[-1].place if lines else 0j
+        start = self._start_of(element, units, before)
+        if start is not None or not lines:
+            lines.append(_Line(element, style, start or 0j))
+        lines[-1].text += element.text or ""
+        for child in element:
+            if name_of(child) in _PARTS:
+                inner = self._sheets.of(child, style, units)
+                if inner["display"] != "none" and inner["visibility"] != "hidden":
+                    self._gather(child, inner, units.sized(inner), lines)
+            lines[-1].text += child.tail or ""
+
+    def _start_of(self, element: Element, units: Units, before: complex) -> complex | None:
+        """Place of a part of a text; None if it goes on where the part before ends."""
+        if name_of(element) == "textPath":
+            self.note(
+                element, "its path is not followed: the text is straight from where it begins"
+            )
+            path = self._ids.get(link_of(element)[1:])
+            segments, _ = outlines.segments_of("" if path is None else path.get("d") or "")
+            return segments[0].end if len(segments) else None
+        if element.get("rotate"):
+            self.note(element, "its letters are turned, which is not felt")
+        found: dict[str, str] = {}
+        for name in ("x", "y", "dx", "dy"):
+            words = (element.get(name) or "").replace(",", " ").split()
+            if words:
+                found[name] = words[0]
+            if words[1:]:
+                self.note(element, f"its letters have places in {name}; the first one counts")
+        move = units.place(found.get("dx"), found.get("dy"))
+        if "x" not in found and "y" not in found and not move.imag:
+            return None
+        place = units.place(found.get("x"), found.get("y"))
+        x = place.real if "x" in found else before.real
+        y = place.imag if "y" in found else before.imag
+        return complex(x, y) + move
+
+    def _of_use(self, element: Element, place: _Place) -> list[AnyPattern]:
         """Patterns of the element that a use shows, at its place."""
         link = link_of(element)
         target = self._ids.get(link[1:]) if link.startswith("#") else None
@@ -438,11 +507,11 @@ class SvgDrawing:
         self._used.append(target)
         found = self._drawn(target, there, (element.get("width"), element.get("height")))
         self._used.pop()
-        return [node._replace(line=element.sourceline or 0) for node in found]
+        return self._lined(element, found)
 
     def _of_svg(
         self, element: Element, place: _Place, sizes: tuple[str | None, ...]
-    ) -> list[DrawnNode]:
+    ) -> list[AnyPattern]:
         """Patterns of a drawing in a drawing, which is fitted into its rectangle and cut to it."""
         units = place.units
         size: list[float] = []
@@ -460,7 +529,7 @@ class SvgDrawing:
             element, changed(place, matrix=place.matrix @ start), (size[0], size[1])
         )
 
-    def _of_shape(self, element: Element, name: str, place: _Place) -> list[DrawnNode]:
+    def _of_shape(self, element: Element, name: str, place: _Place) -> list[AnyPattern]:
         """Patterns of a shape and of its markers, the lowest first."""
         path = outlines.path_of(element, place.style, place.units)
         segments, whole = outlines.segments_of(path)
@@ -486,8 +555,7 @@ class SvgDrawing:
         if place.strength < 1.0:
             amplitude = round(place.strength, 4)
             patterns = [replace(one, amplitude=amplitude) for one in patterns]
-        nodes = [DrawnNode(one, element.sourceline or 0) for one in patterns]
-        return nodes + self._markers(segments, place)
+        return self._lined(element, patterns) + self._markers(segments, place)
 
     def _count_points(self, rings: list[Ring]) -> None:
         self._points += sum(map(len, rings))
@@ -679,7 +747,7 @@ class SvgDrawing:
             style = self._sheets.of(one, style, self._units)
         return style
 
-    def _markers(self, segments: Any, place: _Place) -> list[DrawnNode]:
+    def _markers(self, segments: Any, place: _Place) -> list[AnyPattern]:
         """Patterns of the markers at the vertices of a path."""
         start, middle, end = (
             self._ids.get(target_of(place.style[f"marker-{at}"])) for at in ("start", "mid", "end")
@@ -693,15 +761,15 @@ class SvgDrawing:
             (end, corners[-1:], 0.0),
         ]
         return [
-            node
+            one
             for marker, here, turn in at_ends
             if marker is not None and name_of(marker) == "marker"
-            for node in self._marker(marker, here, place, turn)
+            for one in self._marker(marker, here, place, turn)
         ]
 
     def _marker(
         self, marker: Element, corners: list[outlines.Corner], place: _Place, turn: float
-    ) -> list[DrawnNode]:
+    ) -> list[AnyPattern]:
         """Patterns of a marker at vertices; ``turn`` is what auto-start-reverse adds there."""
         units = place.units
         size = units.place(marker.get("markerWidth", "3"), marker.get("markerHeight", "3"))
@@ -718,7 +786,7 @@ class SvgDrawing:
         middle = fitted(units.place(marker.get("refX"), marker.get("refY")))
         orient = (marker.get("orient") or "0").strip()
         inner = changed(place, style=style, context=place, named=False, depth=place.depth + 1)
-        found: list[DrawnNode] = []
+        found: list[AnyPattern] = []
         self._used.append(marker)
         for corner in corners:
             self._elements += 1

@@ -12,12 +12,10 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError, VbrailleError, lacking
-from vbraille.scene.svg.document import link_of, name_of, read_tree
+from vbraille.scene.svg.document import PX_MM, link_of, name_of, read_tree, view_box_of
 from vbraille.scene.svg.drawing import SvgDrawing
-from vbraille.scene.svg.values import PX_MM, view_box_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
     from vbraille.scene.svg.document import Element
@@ -40,47 +38,50 @@ sys.stdout.buffer.write(bytes(png))
 """
 
 
-def png_of(
-    path: Path, shape_of: Callable[[int, int, tuple[float, float]], tuple[int, int]]
-) -> bytes:
-    """Draw an SVG file as pixels.
+class RasterDrawing:
+    """An SVG file that is to be drawn as pixels.
 
     Texts are left out, since they would depend on the fonts of the machine and cannot be felt, and
     so are images within it.
 
-    Parameters
+    Attributes
     ----------
-    path
-        The file.
-    shape_of
-        Function that says how many columns and rows are wanted, from the drawing's width and height
-        in fine steps, and in mm.
-
-    Returns
-    -------
-    bytes
-        A PNG file of these columns and rows, clear where nothing is drawn.
+    size_mm : tuple of float
+        Width and height, which an SVG file has itself.
+    columns, rows : int
+        Width and height in fine steps.
 
     Raises
     ------
     InputError
-        If the file is none that `read_tree` reads, has no size, cannot be drawn, or takes longer
-        than 10 s, or resvg-py is not installed.
-    VbrailleError
-        If no process can be started.
+        If the file is none that `read_tree` reads, or has no size.
     """
-    root = read_tree(path)
-    width, height = SvgDrawing(str(path), root, {}).size_px
-    fine = _STEPS / max(width, height)
-    steps = max(round(width * fine), 1), max(round(height * fine), 1)
-    columns, rows = shape_of(*steps, (width * PX_MM, height * PX_MM))
-    _make_plain(root)
-    if view_box_of(root.get("viewBox")) is None:
-        root.set("viewBox", f"0 0 {width!r} {height!r}")
-    root.set("preserveAspectRatio", "none")
-    root.set("width", str(columns))
-    root.set("height", str(rows))
-    return _drawn(root, path)
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._root = path, read_tree(path)
+        width, height = self._size = SvgDrawing(str(path), self._root, {}).size_px
+        self.size_mm = (width * PX_MM, height * PX_MM)
+        fine = _STEPS / max(width, height)
+        self.columns, self.rows = max(round(width * fine), 1), max(round(height * fine), 1)
+
+    def png(self, columns: int, rows: int) -> bytes:
+        """Draw it as a PNG file, clear where nothing is drawn.
+
+        Raises
+        ------
+        InputError
+            If it cannot be drawn, takes longer than 10 s, or resvg-py is not installed.
+        VbrailleError
+            If no process can be started.
+        """
+        root, (width, height) = self._root, self._size
+        _make_plain(root)
+        if view_box_of(root.get("viewBox")) is None:
+            root.set("viewBox", f"0 0 {width!r} {height!r}")
+        root.set("preserveAspectRatio", "none")
+        root.set("width", str(columns))
+        root.set("height", str(rows))
+        return _drawn(root, self._path)
 
 
 def _make_plain(root: Element) -> None:

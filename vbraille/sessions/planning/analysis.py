@@ -2,34 +2,41 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal
 
 from msgspec import Meta
 
 from vbraille.sessions.planning.values import Seconds, Share
 from vbraille.toml import Table, WrongValue
 
-
-class Measure(NamedTuple):
-    """A measure that may be the primary one: its name in sentences, and the questions it is of."""
-
-    words: str
-    questions: tuple[str, ...]
-
-
-APART = ("which", "odd", "match", "same-different", "detect")
+# Measures, by their names in sentences.
 MEASURES = {
-    "legibility": Measure("legibility of strings", ("identify",)),
-    "characters": Measure("legibility of characters", ("identify",)),
-    "duration": Measure("duration of right answers", ("identify", "name", "which", "odd", "match")),
-    "right": Measure("right answers", (*APART, "name")),
-    "threshold": Measure("threshold", ("detect", "which", "odd", "match", "identify")),
-    "d_prime": Measure("d′", ("detect", "same-different")),
-    "preferred": Measure("preferred value", ("which",)),
-    "rating": Measure("rating", ("rating",)),
-    "magnitude": Measure("magnitude", ("magnitude",)),
-    "adjusted": Measure("adjusted value", ("adjust",)),
-    "reading_speed": Measure("reading speed in words a minute", ("read",)),
+    "legibility": "legibility of strings",
+    "characters": "legibility of characters",
+    "duration": "duration of right answers",
+    "right": "right answers",
+    "threshold": "threshold",
+    "d_prime": "d′",
+    "preferred": "preferred value",
+    "rating": "rating",
+    "magnitude": "magnitude",
+    "adjusted": "adjusted value",
+    "reading_speed": "reading speed in words a minute",
+}
+# Measures of each kind of question, the usual one first; of words there is none.
+MEASURES_OF = {
+    "identify": ("legibility", "characters", "duration", "threshold"),
+    "which": ("preferred", "threshold", "right", "duration"),
+    "odd": ("right", "threshold", "duration"),
+    "match": ("right", "threshold", "duration"),
+    "same-different": ("right", "d_prime"),
+    "detect": ("d_prime", "right", "threshold"),
+    "rating": ("rating",),
+    "magnitude": ("magnitude",),
+    "name": ("right", "duration"),
+    "read": ("reading_speed",),
+    "adjust": ("adjusted",),
+    "free": (),
 }
 
 
@@ -67,7 +74,7 @@ class Analysis(Table, frozen=True, kw_only=True):
         """Describe it in a line."""
         if self.measure is None:
             return "none, as answers are words"
-        told = [MEASURES[self.measure].words]
+        told = [MEASURES[self.measure]]
         told[0] += " by " + " × ".join(self.factors) if self.factors else ""
         for limit, words in ((self.too_fast_s, "below"), (self.too_slow_s, "above")):
             told += [] if limit is None else [f"without trials {words} {limit:g} s"]

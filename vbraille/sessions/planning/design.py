@@ -7,16 +7,16 @@ are compared.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from random import Random
 from typing import Annotated, Literal, NamedTuple
 
-from msgspec import Meta, structs
+from msgspec import Meta
 
 from vbraille.braille.spelling import spell, spell_string, to_braille
 from vbraille.sessions.planning.spellings import cells_of
 from vbraille.sessions.planning.trial import BLANK, Stimulus
-from vbraille.sessions.planning.values import Count, Look, Number, Parameter
+from vbraille.sessions.planning.values import Count, FileName, Look, Number, Parameter
 from vbraille.toml import Table, WrongValue
 
 MOST_INTERVALS = 5
@@ -41,20 +41,10 @@ class Setting(NamedTuple):
 
 
 class Catch(Table, frozen=True, kw_only=True):
-    """Catch trials: one in every few, or a share of all; and what they show."""
+    """Catch trials: one in every few, and what they show."""
 
-    every: Annotated[int, Meta(ge=2, le=10_000)] | None = None
-    share: Annotated[float, Meta(gt=0, le=0.5)] | None = None
+    every: Annotated[int, Meta(ge=2, le=10_000)]
     show: Literal["blank", "repeat"] = "blank"
-
-    def __post_init__(self) -> None:
-        if (self.every is None) == (self.share is None):
-            raise WrongValue("every", "or share says how many there are; give one of the two")
-
-    @property
-    def stretch(self) -> int:
-        """Number of trials between one catch trial and the next."""
-        return (self.every or round(1 / (self.share or 1))) - 1
 
 
 class Repeated(Table, frozen=True, kw_only=True, tag_field="kind"):
@@ -68,6 +58,8 @@ class Repeated(Table, frozen=True, kw_only=True, tag_field="kind"):
         How many blocks the trials are spread over, or "conditions" for a block of each.
     order
         Order of the blocks of conditions: balanced over participants, as listed, or shuffled.
+    orders
+        File with the order of each participant.
     catch
         Catch trials; None for none.
     counterbalanced
@@ -77,6 +69,7 @@ class Repeated(Table, frozen=True, kw_only=True, tag_field="kind"):
     repeats: Count = 1
     blocks: Annotated[int, Meta(ge=1, le=1000)] | Literal["conditions"] = "conditions"
     order: Literal["balanced", "listed", "shuffled"] | None = None
+    orders: FileName | None = None
     catch: Catch | None = None
     counterbalanced: bool = False
 
@@ -93,29 +86,22 @@ class Repeated(Table, frozen=True, kw_only=True, tag_field="kind"):
         raise NotImplementedError
 
 
-class ItemList(Repeated, frozen=True, kw_only=True, tag="items"):
-    """The strings of the table [items], which are cells, texts or names of pictures.
+class StringList(Repeated, frozen=True, kw_only=True, tag="list"):
+    """The strings of a list, which are cells, texts or names of pictures.
 
     Parameters
     ----------
+    strings
+        The strings.
     reorder
         Whether the cells of a string are shuffled in each trial.
     passage
         Whether each string is a text that is broken into lines, which are read one after the other.
     """
 
+    strings: Annotated[tuple[str, ...], Meta(min_length=1)]
     reorder: bool = False
     passage: bool = False
-
-    def listed(self, strings: Iterable[str]) -> StringList:
-        """Return the design that shows some strings."""
-        return StringList(strings=tuple(strings), **structs.asdict(self))
-
-
-class StringList(ItemList, frozen=True, kw_only=True, tag="list"):
-    """The strings of a list."""
-
-    strings: Annotated[tuple[str, ...], Meta(min_length=1)]
 
     def items(self, keys: dict[str, int] | None) -> list[str]:
         """Return the strings as cells; as they are without keys, for texts and pictures."""
@@ -133,6 +119,12 @@ class StringList(ItemList, frozen=True, kw_only=True, tag="list"):
         cells = cells_of(item, look.table)
         lines = broken(cells, setting.room(look)) if self.passage else [cells]
         return tuple(Stimulus(line, look, text=item) for line in lines)
+
+
+class ItemList(StringList, frozen=True, kw_only=True, tag="items"):
+    """The strings of the table [items]."""
+
+    strings: tuple[str, ...] = ()
 
 
 class Combinations(Repeated, frozen=True, kw_only=True, tag="combinations"):
@@ -194,18 +186,16 @@ class Compared(Repeated, frozen=True, kw_only=True, tag="choice"):
     same: Annotated[int, Meta(ge=0, le=10_000)] = 0
 
     def __post_init__(self) -> None:
-        form, alone = self.form, self.reference is None
+        form, reference = self.form, self.reference
         if len(set(self.values)) < len(self.values):
             raise WrongValue("values", "one is there twice")
-        if alone and form not in ("pairs", "single"):
+        if reference is None and form not in ("pairs", "single"):
             raise WrongValue("form", f"is {form!r}, which needs a reference")
-        again = self.reference in self.values and form != "standard"
-        if not alone and (form == "single" or again):
+        again = reference in self.values and form != "standard"
+        if reference is not None and (form == "single" or again):
             raise WrongValue("reference", "is one of values, or form is 'single'; leave it out")
-        if (self.same and form != "pairs") or (self.intervals != 2 and form != "one"):
-            raise WrongValue("form", "is 'pairs' for same, and 'one' for intervals")
-        if not self.of(self.values):
-            raise WrongValue("values", "are fewer than two, of which none can be compared")
+        if self.same and form != "pairs":
+            raise WrongValue("same", "is for form = 'pairs'; leave it out")
 
     def items(self, keys: dict[str, int] | None) -> list[str]:
         """Return the values of the stimuli of each trial, with blanks between them."""

@@ -16,6 +16,11 @@ from vbraille.toml import Table, WrongValue, which
 
 TRIES = 2000  # for each string that is drawn
 STRING, PARTICIPANT, GROUP = "string", "participant", "group"
+NEEDED = {
+    None: ("file",),
+    "words": ("file", "length"),
+    "strings": ("length", "count", "characters"),
+}
 
 
 class Items(Table, frozen=True, kw_only=True):
@@ -52,14 +57,9 @@ class Items(Table, frozen=True, kw_only=True):
     seed: Seed = 1
 
     def __post_init__(self) -> None:
-        if (self.file is None) != (self.rule == "strings"):
-            raise WrongValue("file", "is needed, but for rule = 'strings'")
-        if self.rule is None and (self.length or self.count or self.characters):
-            raise WrongValue("rule", "is missing, and length, count and characters are of a rule")
-        if self.rule is not None and self.length is None:
-            raise WrongValue("length", "is missing; give the number of cells of each string")
-        if self.rule == "strings" and not (self.count and self.characters):
-            raise WrongValue("count", "and characters are needed for rule = 'strings'")
+        for key in NEEDED[self.rule]:
+            if not getattr(self, key):
+                raise WrongValue(key, "is missing, and these items need it")
 
     def draw(self, strings: list[str], cells: list[str]) -> list[str]:
         """Return the strings that the rule draws.
@@ -81,14 +81,16 @@ class Items(Table, frozen=True, kw_only=True):
         else:
             tried = ("".join(random.choices(cells, k=length)) for _ in range(wanted * TRIES))
         found: list[str] = []
-        while len(found) < wanted and (string := next(tried, None)) is not None:
-            fits = len(string) == self.length and string.strip("⠀ ") != ""
+        for string in tried:
+            fits = len(string) == length and string.strip("⠀ ") != ""
             known = not cells or set(string) <= set(cells)
-            repeats = self.distinct and len(set(string)) < len(string)
+            repeats = self.distinct and len(set(string)) < length
             apart = (sum(map(ne, string, other)) >= self.differ_by for other in found)
             if fits and known and not repeats and all(apart):
                 found.append(string)
-        if not found or (self.count and len(found) < self.count):
+            if len(found) == wanted:
+                break
+        if not found or len(found) < (self.count or 0):
             raise WrongValue("count", f"only {len(found)} strings keep the rule; make it weaker")
         return found
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import unicodedata
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -14,9 +14,9 @@ from msgspec import structs
 
 from vbraille.braille.spelling import LETTERS, name_dots, spell, to_braille
 from vbraille.errors import InputError
-from vbraille.sessions.planning.analysis import MEASURES, Analysis
+from vbraille.sessions.planning.analysis import MEASURES_OF, Analysis
 from vbraille.sessions.planning.design import Compared, ItemList, Setting, StringList
-from vbraille.sessions.planning.items import read_items, read_orders, read_words
+from vbraille.sessions.planning.items import Items, read_items, read_orders, read_words
 from vbraille.sessions.planning.procedures import QuestPlus, quest_of
 from vbraille.sessions.planning.protocol import Condition, Protocol, ProtocolFile
 from vbraille.sessions.planning.trial import Stimulus
@@ -43,20 +43,18 @@ def load_protocol(name: str) -> Protocol:
         If there is no such protocol, or it cannot be used.
     """
     path = Path(name) if name.endswith(".toml") or "/" in name else FOLDER / f"{name}.toml"
+    if path.parent == FOLDER and not path.exists():
+        said = f"unknown protocol {name!r}{which(name, shipped())}"
+        raise InputError(f"{said}; that of a file ends in .toml")
+    files: dict[str, bytes] = {}
+    reads = name
     try:
-        files = {OWN_FILE: path.read_bytes()}
-    except OSError as error:
-        if path.parent == FOLDER:
-            said = f"unknown protocol {name!r}{which(name, shipped())}"
-            raise InputError(f"{said}; that of a file ends in .toml") from None
-        raise InputError(f"{name}: {error.strerror}") from None
-    text, tables = _tables(files, name)
-    for key, beside in _named_files(tables):
-        try:
+        files[OWN_FILE] = path.read_bytes()
+        for beside in _tables(files, name)[1].beside:
+            reads = f"{name} names {beside}"
             files[beside] = (path.parent / beside).read_bytes()
-        except OSError as error:
-            wrong = WrongValue(key, f"is {beside!r}: {error.strerror}")
-            raise located(text, name, wrong) from None
+    except OSError as error:
+        raise InputError(f"{reads}: {error.strerror}") from None
     return parse_protocol(files, name)
 
 
@@ -94,60 +92,42 @@ def _tables(files: dict[str, bytes], where: str) -> tuple[str, ProtocolFile]:
     return text, read_toml(text, ProtocolFile, where)
 
 
-def _named_files(tables: ProtocolFile) -> list[tuple[str, str]]:
-    """Return the files that a protocol names, each with the path of its key."""
-    named = [
-        ("items.file", tables.items and tables.items.file),
-        ("practice.file", tables.practice.file),
-        ("order.file", tables.order and tables.order.file),
-        ("display.scene", tables.display.scene),
-        *((f"conditions.{n}.scene", each.scene) for n, each in enumerate(tables.listed)),
-    ]
-    for n, factor in enumerate(tables.factors):
-        named += [(f"factors.{n}.levels", level.scene) for level in factor.levels]
-    return [(key, name) for key, name in named if name]
-
-
 def _resolved(tables: ProtocolFile, files: dict[str, bytes]) -> Protocol:
-    """Return the protocol with the items and orders of its files."""
+    """Return the protocol with the items and orders of its files, and what it leaves out."""
     protocol = Protocol(**structs.asdict(tables), files=files)
-    design, practice, order = protocol.design, protocol.practice, protocol.order
-    drawn = design if isinstance(design, ItemList) and not isinstance(design, StringList) else None
-    if (drawn is None) != (protocol.items is None):
+    design, items, practice = protocol.design, protocol.items, protocol.practice
+    if isinstance(design, ItemList) != (items is not None):
         raise WrongValue("items", "and [design] kind = 'items' go together; give both or neither")
-    if drawn is not None:
-        strings, columns = _listed(protocol)
-        protocol = structs.replace(protocol, design=drawn.listed(strings), columns=columns)
-    shown: Iterable[str] = practice.strings
-    if practice.file is not None:
-        shown = read_items(files[practice.file], practice.file)
-    elif protocol.shows_pictures and practice.most and not shown:
+    if items is not None:
+        rows = _rows(protocol, items)
+        design = structs.replace(design, strings=tuple(rows))
+        columns = dict(zip(protocol.spelled(rows), rows.values(), strict=True))
+        protocol = structs.replace(protocol, design=design, columns=columns)
+    if protocol.shows_pictures and practice.most and not practice.strings:
         # A picture is learnt before it is asked for, and nothing of it is given away.
-        shown = protocol.items_shown
-    protocol = structs.replace(protocol, practice=structs.replace(practice, strings=tuple(shown)))
-    if order is not None and order.file is not None:
+        practice = structs.replace(practice, strings=tuple(protocol.items_shown))
+        protocol = structs.replace(protocol, practice=practice)
+    if design.orders is not None:
         names = [each.name for each in protocol.conditions]
-        orders = read_orders(files[order.file], order.file, names, protocol.groups)
+        orders = read_orders(files[design.orders], design.orders, names, protocol.groups)
         protocol = structs.replace(protocol, orders=orders)
     return structs.replace(protocol, analysis=_planned(protocol))
 
 
-def _listed(protocol: Protocol) -> tuple[list[str], dict[str, dict[str, str]]]:
-    """Return the strings of [items], and the other columns of each by the item."""
-    items = protocol.items
-    assert items is not None, "it is checked"
+def _rows(protocol: Protocol, items: Items) -> dict[str, dict[str, str]]:
+    """Return the strings of [items], each with the other columns of its file."""
     name = items.file or ""
-    try:
-        if items.rule is None:
-            rows = read_items(protocol.files[name], name)
-            return list(rows), dict(zip(protocol.spelled(rows), rows.values(), strict=True))
-        words = protocol.spelled(read_words(protocol.files[name]) if name else [])
-    except ValueError as error:
-        raise InputError(f"{name}: {error}") from None
+    content = protocol.files.get(name, b"")
+    if items.rule is None:
+        rows = read_items(content, name)
+        _told("items.file", lambda: protocol.spelled(rows))
+        return rows
+    words = _told("items.file", lambda: protocol.spelled(read_words(content)))
     cells = items.characters
     if not protocol.has_texts:
-        cells = [to_braille(spell(text, protocol.masks)) for text in cells]
-    return items.draw(words, list(cells)), {}
+        spelled = _told("items.characters", lambda: [spell(c, protocol.masks) for c in cells])
+        cells = map(to_braille, spelled)
+    return {string: {} for string in items.draw(words, list(cells))}
 
 
 def _planned(protocol: Protocol) -> Analysis:
@@ -157,21 +137,18 @@ def _planned(protocol: Protocol) -> Analysis:
     if len(protocol.listed) > 1:
         varied["condition"] = protocol.listed
     along = [n for n, looks in varied.items() if any(NUMBERS & look.given.keys() for look in looks)]
-    measures = [name for name, each in MEASURES.items() if asks.kind in each.questions]
-    measure = given.measure or next(iter(measures), None)
-    if given.measure is None and asks.kind == "detect":
-        measure = "threshold" if procedure or along else "d_prime"
-    elif given.measure is None and asks.kind == "which":
-        measure = "threshold" if asks.right else "preferred"
-    elif given.measure is None and procedure is not None:
-        measure = "threshold"
-    if measure is not None and measure not in measures:
+    measures = MEASURES_OF[asks.kind]
+    thresholds = procedure or (asks.kind == "detect" and along)
+    if asks.kind == "which":
+        thresholds = asks.right
+    measure = given.measure or ("threshold" if thresholds else next(iter(measures), None))
+    if measure not in (*measures, None):
         wrong = f"{measure!r} is not of {asks.kind}{which('', measures)}"
         raise WrongValue("analysis.measure", wrong)
-    left_out = along if measure == "threshold" and procedure is None else []
     factors = given.factors
     if factors is None:
-        factors = tuple(name for name in varied if name not in left_out)
+        found_along = along if measure == "threshold" and procedure is None else []
+        factors = tuple(name for name in varied if name not in found_along)
     known = [*varied, *(f"item_{column}" for column in protocol.item_columns)]
     for factor in factors:
         if factor not in known:
@@ -193,14 +170,13 @@ def check(protocol: Protocol) -> None:
     for key, dots in protocol.keys.items():
         if len(key) != 1 or len(_told(f"keys.{key}", lambda dots=dots: spell(dots, {}))) != 1:
             raise WrongValue(f"keys.{key}", "a key is one character, and stands for one cell")
-    listed = isinstance(protocol.design, StringList)
-    _told("design.strings" if listed else "design.characters", lambda: protocol.items_shown)
+    strings = isinstance(protocol.design, StringList)
+    _told("design.strings" if strings else "design.characters", lambda: protocol.items_shown)
     _told("practice.strings", lambda: protocol.practised)
-    for rules in (_names, _shows, _asks, _chooses):
+    for rules in (_names, _shows, _asks, _chooses, _orders):
         for where, wrong, why in rules(protocol):
             if wrong:
                 raise WrongValue(where, why)
-    _check_rules(protocol)
     for group in protocol.groups or ("",):
         for condition in protocol.conditions:
             _check_shown(protocol.of_group(group), condition)
@@ -217,22 +193,22 @@ def _names(protocol: Protocol) -> Faults:
     """Find names and columns that two things share, and names of nothing."""
     within = any(not factor.between for factor in protocol.factors)
     yield "conditions", within and protocol.listed, "are made by [[factors]]; leave one out"
-    conditions = [condition.name for condition in protocol.conditions]
-    yield "cross", not conditions, "leaves no condition"
-    for where, own in (
-        ("conditions", [each.name for each in protocol.listed]),
-        ("factors", [each.name for each in protocol.factors]),
-        ("fields", [each.name for each in protocol.fields]),
-        ("factors", conditions),
+    for where, tables in (
+        ("conditions", protocol.listed),
+        ("factors", protocol.factors),
+        ("factors", protocol.conditions),
+        ("fields", protocol.fields),
     ):
-        for n, name in enumerate(own):
-            yield f"{where}.{n}.name", name in own[:n], f"{name!r} is there twice"
+        names = [each.name for each in tables]
+        for n, name in enumerate(names):
+            yield f"{where}.{n}.name", name in names[:n], f"{name!r} is there twice"
+    conditions = [each.name for each in protocol.conditions]
     for name in protocol.markers.codes:
         known = which(name, conditions)
         yield "markers.codes", name not in conditions, f"{name!r} is no condition{known}"
     columns: set[str] = set()
     for n, item in enumerate(protocol.questionnaire):
-        own = {item.name, *([f"{item.name}_correct"] if item.right else [])}
+        own = {item.name, f"{item.name}_correct"} if item.right else {item.name}
         taken = ", ".join(own & columns)
         yield f"questionnaire.{n}.name", taken, f"the column {taken} is there already"
         columns |= own
@@ -242,39 +218,29 @@ def _names(protocol: Protocol) -> Faults:
 
 def _shows(protocol: Protocol) -> Faults:
     """Find faults in how much is shown, and how."""
-    design, texts, practice = protocol.design, protocol.has_texts, protocol.practice
-    pictures, compared = protocol.shows_pictures, isinstance(design, Compared)
-    reorders = getattr(design, "reorder", False)
-    listed = isinstance(design, StringList)
-    yield "design.kind", texts and not listed, "shows cells; table and scene are of lists"
-    yield "design.reorder", texts and reorders, "is of cells, and strings are texts or pictures"
-    no_texts = not texts or pictures or design.catch
-    yield "design.passage", design.passage and no_texts, "is of texts with a table, without catch"
-    where = "order" if protocol.order else "design.order"
-    ordered = protocol.order or design.order
-    yield where, ordered and design.blocks != "conditions", "is for blocks = 'conditions'"
+    design, practice = protocol.design, protocol.practice
+    texts, pictures = protocol.has_texts, protocol.shows_pictures
+    compared, catch = isinstance(design, Compared), design.catch
+    strings = isinstance(design, StringList)
+    yield "design.kind", texts and not strings, "shows cells; table and scene are of lists"
+    reorders = texts and getattr(design, "reorder", False)
+    yield "design.reorder", reorders, "is of cells, and strings are texts or pictures"
+    unread = design.passage and (not texts or pictures or catch)
+    yield "design.passage", unread, "is of texts with a table, without catch"
+    ordered = design.order or design.orders
+    yield "design.order", ordered and design.blocks != "conditions", "is for blocks = 'conditions'"
     shown = 1 if design.counterbalanced else len(protocol.conditions)
     trials = len(protocol.items_shown) * design.repeats * shown + practice.most
-    yield "design.repeats", trials > MOST_TRIALS, f"makes {trials} trials of {MOST_TRIALS} at most"
-    chosen = protocol.procedure is not None and design.catch and design.catch.show == "repeat"
-    unfit = design.catch and (compared or pictures or chosen)
+    yield "design.repeats", not 0 < trials <= MOST_TRIALS, f"makes {trials} trials"
+    unfit = catch and (compared or pictures or (protocol.procedure and catch.show == "repeat"))
     yield "design.catch", unfit, "is of strings, which no procedure repeats; leave it out"
     own = practice.values if compared else practice.strings
     yield "practice", practice.most and not own, "has nothing of its own; give strings or values"
-    if isinstance(design, Compared):
-        tested: list[Any] = [*design.values, design.reference]
-        given = [value for value in practice.values if value in tested]
-    else:
-        order = sorted if reorders else list
-        tested = [order(item) for item in protocol.items_shown]
-        given = [item for item in protocol.practised if order(item) in tested]
-    shows = f"has {given[:1]}, which the test shows; give another"
-    yield "practice", given and not pictures, shows
 
 
 def _asks(protocol: Protocol) -> Faults:
     """Find faults in how a question is asked and answered."""
-    asks, design, pace = protocol.asks, protocol.design, protocol.trial
+    asks, design = protocol.asks, protocol.design
     pictures = protocol.shows_pictures
     form = design.form or ("pictures" if pictures else "passages" if design.passage else "strings")
     fits = form in asks.asks_of or (form == "passages" and asks.kind == "free")
@@ -284,10 +250,9 @@ def _asks(protocol: Protocol) -> Faults:
         unnamed = choice.of and named - {*choice.names.values()}
         yield "question.choices", unnamed, f"lack a name in the column {choice.of!r} of the items"
     off_device = protocol.medium == "paper" or any(look.on == "pins" for look in protocol.looks)
-    changes = pace.exposure_s or protocol.procedure or asks.kind == "adjust" or design.passage
-    changes = changes or pictures or design.form or protocol.pins.reference
+    changes = protocol.trial.exposure_s or protocol.procedure or protocol.pins.reference
+    changes = changes or form != "strings"
     yield "medium", off_device and changes, "paper and pins show strings for any time, alone"
-    yield "trial.end", pace.button and getattr(asks, "buttons", None), "answers already"
 
 
 def _chooses(protocol: Protocol) -> Faults:
@@ -297,7 +262,6 @@ def _chooses(protocol: Protocol) -> Faults:
         return
     scores = asks.scores and not protocol.shows_pictures and not design.passage
     yield "procedure", not scores, f"does not go by answers to {asks.kind!r}"
-    yield "trial.late", protocol.trial.late == "missed", "leaves trials without an answer"
     if not isinstance(design, Compared):
         bounds = table.least is not None and table.most is not None and table.least < table.most
         yield "procedure.parameter", not (table.parameter and bounds), "needs least below most"
@@ -312,7 +276,7 @@ def _chooses(protocol: Protocol) -> Faults:
             yield "design.values", not fits, "must be the nearest and furthest on one side"
             unfit = right not in ("more", "less")
             yield "question.right", unfit, "must be 'more' or 'less' for [procedure]"
-    least, most = table.bounds(design)
+    least, *_, most = table.levels(design)
     for start in getattr(table, "start", ()):
         yield "procedure.start", not least <= start <= most, f"is not from {least:g} to {most:g}"
     if isinstance(table, QuestPlus):
@@ -321,23 +285,21 @@ def _chooses(protocol: Protocol) -> Faults:
         quest_of(table, design)
 
 
-def _check_rules(protocol: Protocol) -> None:
-    """Check that the rules of the order are of what varies, and that letters are shown as often."""
+def _orders(protocol: Protocol) -> Faults:
+    """Find rules of what does not vary, and letters that are not shown as often as they should."""
     rules = protocol.rules
     within = [factor.name for factor in protocol.factors if not factor.between]
     known = ["condition", *within, *protocol.item_columns]
     for name in rules.at_most_running:
-        if name not in known:
-            raise WrongValue("rules.at_most_running", f"{name!r} does not vary{which(name, known)}")
+        said = f"{name!r} does not vary{which(name, known)}"
+        yield "rules.at_most_running", name not in known, said
     exactly, least = rules.each_letter, rules.each_letter_at_least or 0
-    if exactly is None and not least:
-        return
     counts = Counter("".join(protocol.items_shown * protocol.design.repeats))
     for letter, mask in LETTERS.items():
         count = counts[to_braille((mask,))]
-        if exactly not in (None, count) or count < least:
-            key = "each_letter" if exactly is not None else "each_letter_at_least"
-            raise WrongValue(f"rules.{key}", f"{letter} is shown {count} times")
+        said = f"{letter} is shown {count} times"
+        yield "rules.each_letter", exactly not in (None, count), said
+        yield "rules.each_letter_at_least", count < least, said
 
 
 def _check_shown(protocol: Protocol, condition: Condition) -> None:
@@ -348,18 +310,17 @@ def _check_shown(protocol: Protocol, condition: Condition) -> None:
     _told(key, lambda: protocol.style(look))
     if (look.table is None and look.scene is None) == protocol.has_texts:
         raise WrongValue(key, "has no table or scene, and others have; give it one, or [display]")
-    table = protocol.procedure
-    chosen = table.parameter if table is not None else None
     if protocol.varied in condition.given:
         raise WrongValue(key, "sets what [design] or [procedure] varies; leave it out")
-    looks = [look]
-    if table is not None and chosen is not None:  # strings are checked at both ends
-        looks += [look.changed(chosen, value) for value in table.bounds(protocol.design)]
+    looks, table = [look], protocol.procedure
+    if table is not None and table.parameter is not None:  # strings are checked at both ends
+        ends = table.levels(protocol.design)
+        looks += [look.changed(table.parameter, end) for end in ends]
     setting = Setting(protocol.masks, protocol.room, Random(0))
     for where, items in (("design", protocol.items_shown), ("practice", protocol.practised)):
-        for item, look in itertools.product(items, looks):
+        for item, shown in itertools.product(items, looks):
             try:
-                for stimulus in protocol.design.stimuli(item, look, setting):
+                for stimulus in protocol.design.stimuli(item, shown, setting):
                     check_stimulus(protocol, stimulus)
             except ValueError as error:
                 raise WrongValue(where, f"in {condition.name}: {error}") from None

@@ -144,7 +144,7 @@ def _number(participant: str) -> int:
 
 def _choose_order(protocol: Protocol, participant: str, order: int | None, session: int) -> int:
     """Return the number of the balanced order, from 1; 0 if there are none."""
-    if protocol.design.blocks != "conditions" or protocol.block_order != "balanced":
+    if protocol.design.order != "balanced":
         return 0
     if order is None:  # groups take turns, so that each of them has all orders
         order = (_number(participant) - 1) // max(1, len(protocol.groups)) + session
@@ -162,13 +162,13 @@ def _deal(protocol: Protocol, participant: str, order: int, random: Random) -> l
         for n, name in enumerate(names):
             items[name] = shown[(n + shift) % count :: count] * design.repeats
     if design.blocks == "conditions":
-        if protocol.block_order == "table":
+        if design.orders:
             if participant not in protocol.orders:
                 raise InputError(f"the file of orders has no row for {participant}; add one")
             names = protocol.orders[participant].conditions
         elif order:
             names = [names[n] for n in balanced_orders(len(names))[order - 1]]
-        elif protocol.block_order == "shuffled":
+        elif design.order == "shuffled":
             random.shuffle(names)
         return [[(item, name) for item in items[name]] for name in names]
     blocks: list[list[Placed]] = [[] for _ in range(design.blocks)]
@@ -228,17 +228,18 @@ def _trials(protocol: Protocol, places: list[tuple[Placed, int]], random: Random
 def _with_catch(trials: list[Trial], catch: Catch, random: Random) -> list[Trial]:
     """Put a catch trial after a random trial of each stretch; so none is the first."""
     found: list[Trial] = []
-    for first in range(0, len(trials), catch.stretch):
-        part = trials[first : first + catch.stretch]
-        if len(part) == catch.stretch:
-            after = random.randrange(len(part)) + 1
+    between = catch.every - 1
+    for first in range(0, len(trials), between):
+        part = trials[first : first + between]
+        if len(part) == between:
+            after = random.randrange(between) + 1
             caught = structs.replace(part[after - 1], catch=catch.show)
             if catch.show == "blank":
-                blank = tuple(
+                blank = [
                     structs.replace(each, cells=BLANK * len(each.cells), text="")
                     for each in caught.stimuli
-                )
-                caught = structs.replace(caught, stimuli=blank, columns={})
+                ]
+                caught = structs.replace(caught, stimuli=tuple(blank), columns={})
             part.insert(after, caught)
         found += part
     return found

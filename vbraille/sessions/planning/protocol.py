@@ -27,7 +27,6 @@ from vbraille.sessions.planning.trial import Stimulus
 from vbraille.sessions.planning.values import (
     Count,
     Duration,
-    FileName,
     Label,
     Look,
     Name,
@@ -58,9 +57,6 @@ class DisplayLook(Look, frozen=True, kw_only=True):
     travel_mm: Annotated[float, Meta(gt=0, le=5000)] | None = None
 
 
-Cross = Literal["all"] | tuple[tuple[str, ...], ...]
-
-
 class Condition(Look, frozen=True, kw_only=True):
     """A condition, or a level of a factor: its name, and what it changes of the display."""
 
@@ -83,53 +79,6 @@ class Factor(Table, frozen=True, kw_only=True):
     name: Label
     levels: Annotated[tuple[Condition, ...], Meta(min_length=2)]
     between: bool = False
-
-
-def crossed(
-    factors: tuple[Factor, ...], cross: Cross, *, between: bool
-) -> list[tuple[Condition, dict[str, str]]]:
-    """Return the combinations of the factors within participants, or between them.
-
-    Parameters
-    ----------
-    cross
-        "all", or the combinations that are shown, each as levels of all factors in their order.
-
-    Returns
-    -------
-    list
-        Each combination as a condition, and its level of each factor.
-    """
-    own = [factor for factor in factors if factor.between == between]
-    shown = [] if cross == "all" else cross
-    listed = [
-        dict(zip((factor.name for factor in factors), each, strict=False)).items() for each in shown
-    ]
-    found = []
-    for levels in itertools.product(*(factor.levels for factor in own)):
-        names = {factor.name: level.name for factor, level in zip(own, levels, strict=True)}
-        if cross == "all" or any(names.items() <= each for each in listed):
-            look = {key: value for level in levels for key, value in level.given.items()}
-            found.append((Condition(name="-".join(names.values()), **look), names))
-    return found
-
-
-class Order(Table, frozen=True, kw_only=True):
-    """Order of the blocks of conditions: the table [order].
-
-    Parameters
-    ----------
-    kind
-        "williams" or "balanced" for Williams squares over participants, "listed" for that of the
-        file, "random" for one of each participant's own, "table" for that of a file of orders.
-    """
-
-    kind: Literal["williams", "balanced", "listed", "random", "table"]
-    file: FileName | None = None
-
-    def __post_init__(self) -> None:
-        if (self.kind == "table") != (self.file is not None):
-            raise WrongValue("file", "and kind = 'table' go together; give both or neither")
 
 
 class Rules(Table, frozen=True, kw_only=True):
@@ -174,9 +123,8 @@ class Practice(Table, frozen=True, kw_only=True):
     ----------
     trials
         How many there are, unless a criterion ends them.
-    strings, values, file
-        What is shown: strings, or values that are compared, or a file of strings. Pictures may be
-        those of the test.
+    strings, values
+        What is shown: strings, or values that are compared. Pictures may be those of the test.
     order
         Whether it is shuffled, or goes through what is listed, such as from easy to hard.
     feedback
@@ -188,7 +136,6 @@ class Practice(Table, frozen=True, kw_only=True):
     trials: Annotated[int, Meta(ge=0, le=1000)] = 0
     strings: tuple[str, ...] = ()
     values: tuple[Number, ...] = ()
-    file: FileName | None = None
     order: Literal["shuffled", "listed"] = "shuffled"
     feedback: bool = True
     until: Until | None = None
@@ -317,8 +264,6 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
         Whether strings are felt on the device or on paper.
     keys
         Spellings of cells beside the letters a to z: one character each, and its dots.
-    cross
-        Which combinations of the factors' levels are shown.
     """
 
     format: Literal[1] = 1
@@ -329,14 +274,12 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     medium: Literal["device", "paper"] = "device"
     display: DisplayLook = DisplayLook()
     keys: dict[str, str] = {}
-    cross: Cross = "all"
     question: AnyQuestion | None = None
     design: AnyDesign
     items: Items | None = None
     procedure: AnyProcedure | None = None
     listed: tuple[Condition, ...] = msgspec.field(name="conditions", default=())
     factors: tuple[Factor, ...] = ()
-    order: Order | None = None
     rules: Rules = Rules()
     practice: Practice = Practice()
     trial: Pace = Pace()
@@ -348,6 +291,18 @@ class ProtocolFile(Table, frozen=True, kw_only=True):
     fields: tuple[Field, ...] = ()
     questionnaire: tuple[Item, ...] = ()
     analysis: Analysis = Analysis()
+
+    @property
+    def looks(self) -> list[Look]:
+        """All looks that the tables name."""
+        levels = [level for factor in self.factors for level in factor.levels]
+        return [self.display, *self.listed, *levels]
+
+    @property
+    def beside(self) -> list[str]:
+        """Names of the files beside it."""
+        named = [self.items and self.items.file, self.design.orders]
+        return sorted({*filter(None, (*named, *(look.scene for look in self.looks)))})
 
 
 class Protocol(ProtocolFile, frozen=True, kw_only=True):
@@ -370,33 +325,45 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
     orders: dict[str, OrderRow] = {}
     group: str = ""
 
+    def crossed(self, *, between: bool) -> list[tuple[str, dict[str, Condition]]]:
+        """Return the combinations of the factors within participants, or between them.
+
+        Returns
+        -------
+        list
+            Name of each combination, and its level of each factor.
+        """
+        own = [factor for factor in self.factors if factor.between == between]
+        names = [factor.name for factor in own]
+        return [
+            ("-".join(level.name for level in levels), dict(zip(names, levels, strict=True)))
+            for levels in itertools.product(*(factor.levels for factor in own))
+        ]
+
     @property
     def conditions(self) -> tuple[Condition, ...]:
         """Conditions: those that are listed, or all combinations of factors; at least one."""
         if all(factor.between for factor in self.factors):
             return self.listed or (Condition(name="all"),)
-        return tuple(cell for cell, _ in crossed(self.factors, self.cross, between=False))
+        cells = self.crossed(between=False)
+        return tuple(Condition(name=name, **_given(levels)) for name, levels in cells)
 
     @property
     def groups(self) -> tuple[str, ...]:
         """Names of the groups of participants; none if all do the same."""
-        cells = crossed(self.factors, self.cross, between=True)
-        return tuple(cell.name for cell, _ in cells if cell.name)
+        return tuple(name for name, _ in self.crossed(between=True) if name)
 
     def of_group(self, group: str) -> Protocol:
         """Return the protocol as a group has it."""
-        cells = crossed(self.factors, self.cross, between=True)
-        look = next(cell for cell, _ in cells if cell.name == group)
-        display = msgspec.structs.replace(self.display, **look.given)
+        levels = dict(self.crossed(between=True))[group]
+        display = msgspec.structs.replace(self.display, **_given(levels))
         return msgspec.structs.replace(self, display=display, group=group)
 
     def levels(self, condition: str, group: str) -> dict[str, str]:
         """Return the level of each factor in a condition of a group."""
-        found: dict[str, str] = {}
-        for between, name in ((False, condition), (True, group)):
-            cells = crossed(self.factors, self.cross, between=between)
-            found |= next((levels for cell, levels in cells if cell.name == name), {})
-        return found
+        within, between = (dict(self.crossed(between=each)) for each in (False, True))
+        levels = within.get(condition, {}) | between.get(group, {})
+        return {factor: level.name for factor, level in levels.items()}
 
     def look(self, condition: str) -> Look:
         """Return how a condition shows what has no value of its own."""
@@ -416,12 +383,6 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
     def varied(self) -> str:
         """Parameter that stimuli are compared by, or that a procedure varies; empty for none."""
         return self.design.parameter or getattr(self.procedure, "parameter", None) or ""
-
-    @property
-    def block_order(self) -> str:
-        """Order of conditions in blocks: listed, shuffled, balanced or table."""
-        kind = self.order.kind if self.order else self.design.order or "listed"
-        return {"williams": "balanced", "random": "shuffled"}.get(kind, kind)
 
     @property
     def masks(self) -> dict[str, int]:
@@ -464,12 +425,6 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
         return any(look.scene or look.table for look in self.looks)
 
     @property
-    def looks(self) -> list[Look]:
-        """All looks that the tables name."""
-        levels = [level for factor in self.factors for level in factor.levels]
-        return [self.display, *self.listed, *levels]
-
-    @property
     def items_shown(self) -> list[str]:
         """The items of the design, each once."""
         return self.design.items(None if self.has_texts else self.masks)
@@ -503,3 +458,8 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
     def needs_pins(self) -> bool:
         """Tell whether a conventional display is needed."""
         return bool(self.pins.reference) or any(look.on == "pins" for look in self.looks)
+
+
+def _given(levels: dict[str, Condition]) -> dict[str, Any]:
+    """Return what some levels of factors change of the display."""
+    return {key: value for level in levels.values() for key, value in level.given.items()}

@@ -21,6 +21,7 @@ from vbraille.render.program import Program, nothing
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import make_shown
 from vbraille.sessions.planning.trial import Stimulus, Trial
+from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Content, Event, read, reading
 from vbraille.sessions.record.ticks import FIELDS, read_all
 from vbraille.sessions.record.trials import protocol_of
@@ -52,8 +53,8 @@ class Replay:
 
     Attributes
     ----------
-    content, protocol
-        What the record holds, and the protocol as the participant's group has it.
+    content, protocol, progress
+        What the record holds, the protocol as the participant's group has it, and what happened.
     showings : dict of Showing
         What was put under the hand, by the number in the ticks, in order.
 
@@ -67,13 +68,12 @@ class Replay:
         self.content: Content = read(path)
         self.protocol: Protocol = protocol_of(self.content)
         self.showings: dict[int, Showing] = {}
+        self.progress = Progress(self.protocol, self.content.plan, self.content.events)
         trials = {trial.key: trial for trial in self.content.plan.trials}
         for cue in self.content.events:
-            if cue.kind == "cue" and cue.key and (line := cue.data.get("line")) is not None:
-                trial = trials[cue.key]
-                stimulus = trial.stimuli[cue.data["stimulus"]]
-                if (value := cue.data.get("value")) is not None:
-                    stimulus = stimulus.at(self.protocol.varied, value)
+            if cue.kind == "cue" and cue.key and "line" in cue.data:
+                trial, line = trials[cue.key], cue.data["line"]
+                stimulus = self.progress.stimulus(trial, cue)
                 self.showings[line] = Showing(line, cue, trial, stimulus)
         self._program = lru_cache(maxsize=8)(self._compile)
 

@@ -15,6 +15,7 @@ from typing import Any, Self
 from msgspec import structs
 
 from vbraille.braille.spelling import ordinal, say_cells
+from vbraille.display import Display
 from vbraille.engine.engine import WHY
 from vbraille.engine.record import RingReader
 from vbraille.errors import InputError
@@ -22,6 +23,7 @@ from vbraille.live.messages import LetGo, Point, ViewState
 from vbraille.live.states import array_shown, cells_shown, geometry_shown, rows_shown
 from vbraille.live.view import LiveView
 from vbraille.sessions.planning.protocol import Protocol
+from vbraille.sessions.planning.trial import Stimulus
 from vbraille.sessions.running.device import SessionDevice
 from vbraille.sessions.running.runner import Runner
 from vbraille.simulation import steering
@@ -38,6 +40,12 @@ SAFE = frozenset(
 # The address of the live view has its token in it.
 NEVER = frozenset(("live view", "record", "resume"))
 MOST_SAID = 20
+WAITS_FOR = {
+    "answer": "the answer",
+    "confidence": "how sure the answer is",
+    "reply": "a reply to the questionnaire",
+    "go": "Enter",
+}
 _log = logging.getLogger(__name__)
 
 
@@ -130,8 +138,7 @@ class SessionView:
     def _state(self, runner: Runner, device: SessionDevice) -> ViewState:
         """Return what pages show."""
         protocol, trial, newest = runner.protocol, runner.trial, device.newest
-        style = protocol.style(protocol.display)
-        facts = []
+        style, facts = protocol.style(protocol.display), []
         if trial is not None:
             facts.append(("trial", runner.name))
             if len(trial.stimuli) > 1 and runner.is_shown:
@@ -142,6 +149,7 @@ class SessionView:
         minutes, seconds = divmod(int(runner.elapsed_s), 60)
         facts.append(("answered", str(runner.progress.done)))
         facts.append(("time", f"{minutes} min {seconds:02} s"))
+        waits_for = WAITS_FOR[runner.asked.what] if runner.asked else runner.presenter.why
         flags = 0 if newest is None else int(newest["flags"])
         why = next((words for flag, words in WHY.items() if flags & flag), "the device is in use")
         state = ViewState(
@@ -149,7 +157,7 @@ class SessionView:
             array=array_shown(device.display),
             geometry=geometry_shown(style.geometry),
             rows_shown=rows_shown(style, device.display),
-            place=f"waits for {runner.waits_for}" if runner.waits_for else "",
+            place=f"waits for {waits_for}" if waits_for else "",
             paused=runner.paused,
             simulated=device.engine.steered,
             device="device: starts" if newest is None else f"device: {why}",
@@ -161,32 +169,26 @@ class SessionView:
         )
         if self.blind or trial is None:
             return state
-        return structs.replace(state, **_unhidden(facts, runner, device))
+        facts = [*facts, ("condition", trial.condition)]
+        if not runner.is_shown or runner.presenter.by_key:
+            return structs.replace(state, facts=facts)
+        stimulus = trial.stimuli[runner.stimulus]
+        facts.append(("asked for", stimulus.picture or say_cells(stimulus.cells, protocol.masks)))
+        shown = stimulus_shown(protocol, stimulus, device.line, device.display)
+        return structs.replace(state, facts=facts, **shown)
 
 
-def _unhidden(
-    facts: list[tuple[str, str]], runner: Runner, device: SessionDevice
+def stimulus_shown(
+    protocol: Protocol, stimulus: Stimulus, line: int, display: Display
 ) -> dict[str, Any]:
-    """Return what a blind state keeps back of the open trial."""
-    protocol, trial = runner.protocol, runner.trial
-    assert trial is not None
-    facts = [*facts, ("condition", trial.condition)]
-    if not runner.is_shown or runner.presenter.by_key:
-        return {"facts": facts}
-    stimulus = trial.stimuli[runner.stimulus]
+    """Return what pages are told of a stimulus, which a blind state keeps back."""
     style, lines = protocol.style(stimulus.look), []
     if not stimulus.picture:
         masks = stimulus.masks(protocol.display.lead_cells)
-        lines.append(cells_shown(device.line, masks, stimulus.text, under=True))
-    facts += [
-        ("contrast", f"{style.tuning.contrast:g}"),
-        ("texture", f"{style.tuning.texture:g}"),
-        ("asked for", stimulus.picture or say_cells(stimulus.cells, protocol.masks)),
-    ]
+        lines.append(cells_shown(line, masks, stimulus.text, under=True))
     return {
-        "facts": facts,
         "geometry": geometry_shown(style.geometry),
         "mapping": f"mapping: {style.mapping.name}",
-        "rows_shown": rows_shown(style, device.display),
+        "rows_shown": [] if stimulus.picture else rows_shown(style, display),
         "lines": lines,
     }

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, NamedTuple, TypeVar
 
-from vbraille.braille.spelling import ordinal, say_cells
+from vbraille.braille.spelling import ordinal
 from vbraille.engine.host import HostDiedError
 from vbraille.errors import InputError
 from vbraille.sessions.planning.questionnaire import Item
@@ -57,10 +57,6 @@ class Over(Exception):
         self.kind, self.why, self.data = kind, why, data
 
 
-def nothing(*_: object) -> None:
-    """Do nothing."""
-
-
 class Runner:
     """Runs a session.
 
@@ -86,17 +82,12 @@ class Runner:
     ----------
     trial : Trial or None
         Trial that is open, or comes next.
-    stimulus : int
-        Which of its stimuli is shown, from 0.
-    is_shown, paused : bool
-        Whether a stimulus is shown, and whether the session is paused.
+    attempt, stimulus : int
+        Which attempt at it, from 1, and which of its stimuli is shown, from 0.
+    is_shown, paused, is_over : bool
+        Whether a stimulus is shown, the session is paused, and the run is over.
     asked : Asked or None
         What a line is waited for.
-    waits_for : str
-        What the session waits for, in words for people.
-    break_wanted, is_over : bool
-        Whether the experimenter has asked for a break that has not begun, and whether the run is
-        over.
     """
 
     def __init__(
@@ -114,32 +105,22 @@ class Runner:
         look: Callable[[Runner], None],
     ) -> None:
         self.progress, self.protocol = progress, progress.protocol
-        self.answers, self.device, self.pins = answers, device, pins
+        self.device, self.say = device, say
         self.trial: Trial | None = None
         self.attempt = self.stimulus = 0
-        self.is_shown = self.paused = self.break_wanted = self.is_over = False
+        self.is_shown = self.paused = self.is_over = False
         self.asked: Asked | None = None
-        self.waits_for = ""
-        self.say = say
-        self._record, self._real = record, real
+        self._record, self._answers, self._pins, self._real = record, answers, pins, real
         self._play, self._mark, self._look = play, mark, look
         self._suspension = Suspension()
         self._key = ""  # the key that ends reading, if one does
         self._deaths = 0
+        self._break_wanted = self._late = False
         self._told: dict[str, Any] = {}  # what the event of a run says
-        self._began_s = self._before_s = 0.0
-        self._free_s = 0.0  # since when the gap before the next trial counts
-        self._paused_s = 0.0
-        # Since when the times of the open trial count, pauses left out: "cue", the time to the
-        # "warning", the "exposure", and the time for an "answer". What is over is no longer there.
-        self._since_s: dict[str, float] = {}
-        self._late = False
-        self._ended_by = ""
-        self._doubted = ""  # answer that was typed early, and is asked for once more
-        stimuli = [s for trial in progress.plan.trials for s in trial.stimuli]
-        spelled = {say_cells(s.cells, self.protocol.masks).replace(" ", "") for s in stimuli}
-        spelled |= {stimulus.text.casefold() for stimulus in stimuli}
-        self._ambiguous = spelled & COMMANDS.keys() if answers.typed else set()
+        self._began_s = self._before_s = self._free_s = self._paused_s = 0.0
+        # When the "warning", the end of the "exposure", of the time for an "answer", and of a
+        # "break" are due.
+        self._due_s: dict[str, float] = {}
 
     @property
     def elapsed_s(self) -> float:
@@ -150,7 +131,7 @@ class Runner:
     def presenter(self) -> Presenter:
         """Presenter of the trial that is open or comes next."""
         on_pins = self.trial is not None and self.trial.stimuli[0].on == "pins"
-        return self.pins if self.pins is not None and on_pins else self.device
+        return self._pins if self._pins is not None and on_pins else self.device
 
     @property
     def name(self) -> str:
@@ -160,12 +141,12 @@ class Runner:
         return f"{self.trial.name} of {len(alike)}"
 
     @property
-    def reading(self) -> bool:
+    def _reading(self) -> bool:
         """True if a stimulus is read, so that the participant's key may end it."""
         return self.is_shown and not (self.paused or self.device.ended or self.presenter.by_key)
 
     @property
-    def more_to_come(self) -> bool:
+    def _more_to_come(self) -> bool:
         """True if a stimulus of the open trial has not been shown yet."""
         return self.trial is not None and self.stimulus + 1 < len(self.trial.stimuli)
 
@@ -182,25 +163,33 @@ class Runner:
         Over
             Why the run is over, for `finish`; the array rests.
         """
-        self._told = {"answers": self.answers.name, **told}
+        self._told = {"answers": self._answers.name, **told}
         self._begin()
         self._watch_key()
-        if self.progress.done:
-            self.say(f"resume: {self.progress.done} trials have answers")
         with self._suspension:
             try:
                 while self._go_through():
-                    self.withdraw()
-                over = Over("end", "all trials are done")
+                    self._withdraw()
+                over = Over("end", self.progress.why_over)
             except NoMoreAnswers:
                 over = Over("stop", "there are no more answers")
             except Over as left:
                 over = left
         trial, self.trial = self.trial, None
-        self.withdraw()
+        self._withdraw()
         if trial is not None and self.progress.lacks_confidence(trial):
             self.say(f"no confidence: the answer to {trial.name} is kept without one")
         return over
+
+    def finish(self, over: Over) -> None:
+        """Write why the run is over, and say it."""
+        self.is_over, self.asked = True, None
+        self.log(over.kind, why=over.why, **over.data)
+        goes_on = "; session resume goes on" if over.kind == "stop" else ""
+        self.say(f"{over.kind}: {over.why}; {self.progress.done} trials have answers{goes_on}")
+        for sentence in self.progress.found if over.kind == "end" else ():
+            self.say(sentence)
+        self._look(self)
 
     def _begin(self, **why: Any) -> None:
         """Write that a run has begun; another one does when the engine is started again."""
@@ -214,37 +203,21 @@ class Runner:
         try:
             while self._go_on():
                 pass
-            if self.answers.typed:
+            if self._answers.typed:
                 self.trial = None
-                self.say("last: all trials are done; Enter ends, undo takes back the last answer")
+                last = f"last: {self.progress.why_over}"
+                self.say(f"{last}; Enter ends, undo takes back the last answer")
                 with suppress(NoMoreAnswers):
-                    self.await_enter("Enter, which ends the session")
+                    self._await_enter()
         except Again:
             return True
         return False
 
-    def finish(self, over: Over) -> None:
-        """Write why the run is over, and say it."""
-        self.is_over, self.waits_for = True, ""
-        self.log(over.kind, why=over.why, **over.data)
-        goes_on = "; session resume goes on" if over.kind == "stop" else ""
-        self.say(f"{over.kind}: {over.why}; {self.progress.done} trials have answers{goes_on}")
-        for sentence in self.progress.found if over.kind == "end" else ():
-            self.say(sentence)
-        self._look(self)
-
     def _go_on(self) -> bool:
         """Do what comes next; return whether there was anything."""
-        progress = self.progress
-        trial, asked = progress.next_trial, progress.next_item
-        if trial is None:
-            waits = False
-        else:  # nothing is asked in practice, nor between a trial and its answer or confidence
-            half_done = progress.is_taken_back(trial) or progress.lacks_confidence(trial)
-            waits = trial.practice or half_done
-        if asked is not None and not waits:
+        if (asked := self.progress.next_item) is not None:
             self._ask_item(*asked)
-        elif trial is not None:
+        elif (trial := self.progress.next_trial) is not None:
             self._conduct(trial)
         else:
             return False
@@ -254,7 +227,6 @@ class Runner:
         """Ask a question of the questionnaire, and write the reply."""
         self.trial = None
         self.say(f"question: {item.ask} Type {item.typed}")
-        self.waits_for = "a reply to the questionnaire"
         line, reply = self._ask_for(Asked("reply", item=item), item.parse)
         self.log("reply", name=item.name, number=number, reply=reply, **_numbered(line))
         self.say(f"reply: {item.name} is in")
@@ -264,7 +236,7 @@ class Runner:
 
     def _conduct(self, trial: Trial) -> None:
         """Conduct a trial, or what is left of it."""
-        self.trial, self.attempt = trial, self.progress.attempts(trial)
+        self.trial, self.attempt = trial, self.progress.tried[trial.key].attempts
         if self.progress.lacks_confidence(trial):
             self._ask_confidence(trial)
             return
@@ -276,37 +248,45 @@ class Runner:
 
     def _prepare(self, trial: Trial) -> None:
         """Wait until a trial may begin."""
-        limit_s = self.protocol.session.limit_s
-        if limit_s is not None and self.elapsed_s > limit_s:
-            for item in self.protocol.questionnaire:
-                if item.when == "end" and (item.name, 0) not in self.progress.replies:
-                    self._ask_item(item, 0)
-            raise Over("end", f"the limit of {limit_s:g} s is over")
-        if self.break_wanted or self.progress.is_break_due(trial):
+        if self._break_wanted or self.progress.is_break_due(trial):
             self._have_break()
-        presenter, pins = self.presenter, self.pins
+        presenter, pins = self.presenter, self._pins
         where = ", on the conventional display" if presenter is pins else ""
-        enter = presenter.by_key and self.answers.typed
+        enter = presenter.by_key and self._answers.typed
         how = "; press Enter when reading begins" if enter else ""
         again = ", again" if self.attempt else ""
         self.say(f"ready: {self.name}{again}{where}{how}")
         if enter:
-            self.await_enter("Enter when reading begins")
-        self.waits_for = presenter.why or "the device, with the array at the left"
+            self._await_enter()
         needed = [presenter, pins] if pins and self.protocol.pins.reference else [presenter]
         due_s = self._free_s + trial.gap_s
         while self.paused or self.device.now_s < due_s or not all(each.ready for each in needed):
-            self._wait_for_no_line()
+            self._wait_idly("no answer is waited for now; help lists what may be typed")
+
+    def _have_break(self) -> None:
+        """Have a break until Enter is typed."""
+        self._break_wanted = False
+        trial, self.trial = self.trial, None
+        self.log("break")
+        if self._answers.typed:
+            planned_s, planned = self.protocol.session.break_s, ""
+            if planned_s is not None:
+                planned = f"{planned_s:g} s are planned; "
+                self._due_s["break"] = self.device.now_s + planned_s
+            self.say(f"break: {self.progress.done} trials are done; {planned}Enter goes on")
+            self._await_enter()
+        self.log("go")
+        self.trial = trial
 
     def _present(self, trial: Trial) -> None:
-        """Show the stimuli of a trial, up to the last one."""
+        """Show the stimuli of a trial, and wait for all but the last to be read."""
         self._late = False
-        self._ended_by = self._doubted = ""
         for number in range(len(trial.stimuli)):
             self.stimulus = number
             self._show(trial)
-            while self.more_to_come and not (self.presenter.read and self.presenter.ready):
-                self._wait_for_no_line()
+            not_felt = f"the {ordinal(number + 1)} has not been felt yet"
+            while self._more_to_come and not (self.presenter.read and self.presenter.ready):
+                self._wait_idly(f"{not_felt}; repeat shows all from the first")
 
     def _show(self, trial: Trial, *, turned: bool = False) -> None:
         """Put a stimulus before the participant; the record has it before it is felt.
@@ -316,17 +296,13 @@ class Runner:
         turned
             Whether it is the stimulus that is shown already, at another value.
         """
-        stimulus, presenter = trial.stimuli[self.stimulus], self.presenter
+        stimulus, presenter, pins = trial.stimuli[self.stimulus], self.presenter, self._pins
         is_first = not self.stimulus and not turned
-        shown: dict[str, Any] = {"stimulus": self.stimulus}
-        if self.protocol.varied:
-            value = getattr(stimulus.look, self.protocol.varied)
-            shown["value"] = value if stimulus.value is None else stimulus.value
-        shown |= presenter.prepare(stimulus)
-        if turned:
-            shown["turned"] = True
-        if is_first and self.pins and self.pins is not presenter and self.protocol.pins.reference:
-            self.pins.show_reference()
+        shown: dict[str, Any] = {"stimulus": self.stimulus, **presenter.prepare(stimulus)}
+        if varied := self.protocol.varied:
+            shown["value"] = getattr(stimulus.look, varied)
+        if is_first and pins and pins is not presenter and self.protocol.pins.reference:
+            pins.show_reference()
         now_s = self.device.now_s
         if not turned:
             self._play(Tone(*self.protocol.sound.cue))
@@ -341,114 +317,71 @@ class Runner:
     def _start_times(self, now_s: float) -> None:
         """Have the times of a trial count from a cue."""
         pace = self.protocol.trial
-        self._since_s = {"cue": now_s, "warning": now_s}
+        self._due_s.clear()
+        self._expect("warning", now_s, pace.warning_s)
         if pace.exposure_from == "cue":
-            self._since_s["exposure"] = now_s
-        if pace.exposure_s is None and not self.more_to_come:
-            self._since_s["answer"] = now_s
+            self._expect("exposure", now_s, pace.exposure_s)
+        if pace.exposure_s is None and not self._more_to_come:
+            self._expect("answer", now_s, pace.answer_s)
+
+    def _expect(self, what: str, from_s: float, after_s: float | None) -> None:
+        if after_s is not None:
+            self._due_s[what] = from_s + after_s
 
     def _ask(self, trial: Trial) -> None:
         """Wait for the answer of a trial, and write it."""
-        question, typed, names = self.protocol.asks, self.answers.typed, ""
+        asks, names = self.protocol.asks, ""
+        spelling = self.protocol.spelling(trial.stimuli[0])
         if not self.is_shown:
-            self.say(f"undo: {self.name}; type its answer: {question.typed}")
+            self.say(f"undo: {self.name}; type its answer: {asks.typed}")
         while True:
             line = self._wait_for_line(self._of_trial("answer"))
-            if self.is_shown and (steps := question.steps(line.text)) is not None:
+            if self.is_shown and (steps := asks.steps(line.text)) is not None:
                 trial = self._turn(trial, steps)
                 continue
             try:
-                if question.confirm and typed:
-                    names, line = self._confirm(names, line)
-                if typed and not line.text:
-                    continue
-                answer, sure = self._parse(trial, line.text)
+                if asks.confirm and self._answers.typed:
+                    chosen = " ".join(filter(None, asks.marked(f"{names} {line.text}")))
+                    if chosen != names:
+                        names = chosen
+                        self.say(f"chosen: {names}; Enter takes it")
+                        continue
+                    line = line._replace(text=names)
+                text, _, sure = line.text.partition(";") if asks.confidence else (line.text, "", "")
+                answer = asks.parse(text, trial, spelling)
+                if sure:
+                    asks.confidence.parse(sure)  # both are refused, or none
+                break
             except ValueError as error:
                 self._refuse(error, line)
-                continue
-            if not self._is_doubted(answer):
-                break
-        self._take_answer(trial, answer, sure, line)
-
-    def _confirm(self, before: str, line: Line) -> tuple[str, Line]:
-        """Say names back until Enter takes them; the line is empty as long as nothing is taken.
-
-        Parameters
-        ----------
-        before
-            Names that were said back already.
-        """
-        question = self.protocol.asks
-        names = question.marked(f"{before} {line.text}")
-        chosen, missing = " ".join(filter(None, names)), question.missing(names)
-        if chosen and chosen == before and not missing:
-            return chosen, Line(chosen)
-        if chosen:
-            how = f"one of {missing} is missing" if missing else "Enter takes it"
-            self.say(f"chosen: {chosen}; {how}")
-        return chosen, Line("")
-
-    def _parse(self, trial: Trial, text: str) -> tuple[str, int | None]:
-        """Read an answer, and how sure it is if that stands after a semicolon."""
-        asks, spelling = self.protocol.asks, self.protocol.spelling(trial.stimuli[0])
-        before, semicolon, after = text.rpartition(";")
-        if asks.confidence is None or not semicolon:
-            return asks.parse(text, trial, spelling), None
-        return asks.parse(before.strip(), trial, spelling), asks.confidence.parse(after)
-
-    def _is_doubted(self, answer: str) -> bool:
-        """Ask once about an answer that was typed before the stimulus was read."""
-        typed_early = self.answers.typed and self.is_shown and not self.presenter.reached
-        if not typed_early or answer == self._doubted or hasattr(self.protocol.asks, "step"):
-            return False
-        self._doubted = answer
-        self.say("no answer: it was not read to its end yet; the same answer again is taken")
-        return True
-
-    def _take_answer(self, trial: Trial, answer: str, sure: int | None, line: Line) -> None:
-        """Write an answer, say that it is in, and ask how sure it is."""
-        asks, pace, spelling = (
-            self.protocol.asks,
-            self.protocol.trial,
-            self.protocol.spelling(trial.stimuli[0]),
-        )
         told: dict[str, Any] = {"answer": answer, "typed": line.text, **_numbered(line)}
         if self.is_shown:
             told |= {} if self.presenter.reached else {"early": True}
             told |= {"late": True} if self._late else {}
-            if pace.end or pace.exposure_s:
-                told["ended_by"] = self._ended_by or "answer"
-        self.withdraw()
+        self._withdraw()
         self.log("answer", **told)
         self.say(f"answer: {self.name}, {asks.said(answer, spelling)}")
         outcome, was = asks.outcome(trial, answer), asks.was(trial, spelling)
-        if outcome and (trial.practice or pace.feedback):
+        if outcome and (trial.practice or self.protocol.trial.feedback):
             self.say(f"feedback: {outcome}{f', it was {was}' if was else ''}")
         self._free_s = self.device.now_s
-        if sure is not None:
-            self._rate(sure, line)
-        elif self.progress.lacks_confidence(trial):
-            self._ask_confidence(trial)
+        if self.progress.lacks_confidence(trial):
+            self._ask_confidence(trial, line._replace(text=sure) if sure else None)
 
-    def _ask_confidence(self, trial: Trial) -> None:
-        """Wait until it is said how sure an answer is, and write it."""
+    def _ask_confidence(self, trial: Trial, line: Line | None = None) -> None:
+        """Wait until it is said how sure an answer is, unless a line has it, and write it."""
         scale = self.protocol.asks.confidence
-        assert scale is not None, "a confidence is lacking"
-        if self.answers.typed:
+        if self._answers.typed and line is None:
             self.say(f"confidence: {self.name}; type {scale.least} to {scale.most}")
-        answer = self.progress.answers[trial.key].data["answer"]
-        asked = self._of_trial("confidence")._replace(answer=answer)
-        line, sure = self._ask_for(asked, scale.parse)
-        self._rate(sure, line)
-        self._free_s = self.device.now_s
-
-    def _rate(self, sure: int, line: Line) -> None:
+        line, sure = self._ask_for(self._of_trial("confidence"), scale.parse, line)
         self.log("confidence", confidence=sure, **_numbered(line))
         self.say(f"rated: {self.name}, confidence {sure}")
+        self._free_s = self.device.now_s
 
     def _of_trial(self, what: Any) -> Asked:
-        self.waits_for = "the answer" if what == "answer" else "how sure the answer is"
-        return Asked(what, self.trial, self.attempt, self.presenter.explorations)
+        given = self.progress.answer(self.trial) if self.trial else None
+        answer = "" if given is None else given.data["answer"]
+        return Asked(what, self.trial, self.attempt, self.presenter.explorations, answer)
 
     def _turn(self, trial: Trial, steps: int) -> Trial:
         """Show the last stimulus at another value, and return the trial that is shown now."""
@@ -465,50 +398,31 @@ class Runner:
         self.say(f"turned: {self.name}")
         return trial
 
-    def _ask_for(self, asked: Asked, parse: Callable[[str], Read]) -> tuple[Line, Read]:
-        """Wait for a line that can be read."""
+    # Waiting.
+
+    def _ask_for(
+        self, asked: Asked, parse: Callable[[str], Read], line: Line | None = None
+    ) -> tuple[Line, Read]:
+        """Wait for a line that can be read, unless it was given already."""
         while True:
-            line = self._wait_for_line(asked)
+            line = line or self._wait_for_line(asked)
             try:
                 return line, parse(line.text)
             except ValueError as error:
                 self._refuse(error, line)
+                line = None
 
     def _refuse(self, error: ValueError, line: Line) -> None:
         """Say why a line is no answer; a line of a file or a program cannot be typed again."""
-        if not self.answers.typed:
+        if not self._answers.typed:
             where = f" line {line.number}" if line.number else ""
-            raise InputError(f"{self.answers.name}{where}: {error}") from None
+            raise InputError(f"{self._answers.name}{where}: {error}") from None
         self.say(f"no answer: {error}")
 
-    def _have_break(self) -> None:
-        """Have a break until Enter is typed."""
-        self.break_wanted = False
-        trial, self.trial = self.trial, None
-        self.log("break")
-        if self.answers.typed:
-            planned_s = self.protocol.session.break_s
-            planned = "" if planned_s is None else f"{planned_s:g} s are planned; "
-            self.say(f"break: {self.progress.done} trials are done; {planned}Enter goes on")
-            self.await_enter("Enter, which ends the break", planned_s)
-        self.log("go")
-        self.trial = trial
-
-    # Waiting.
-
-    def await_enter(self, waits_for: str, planned_s: float | None = None) -> None:
-        """Wait until Enter is typed, and say when the planned time is over."""
-        self.waits_for = waits_for
-        began_s = self.device.now_s
-        while True:
-            found = self.wait(Asked("go"))
-            if found is not None and not found.text.strip():
-                return
-            if found is not None:
-                self.say("no answer is waited for now; Enter goes on")
-            if planned_s is not None and self.device.now_s - began_s >= planned_s:
-                planned_s = None
-                self.say("break: its time is over; Enter goes on")
+    def _await_enter(self) -> None:
+        """Wait until Enter is typed."""
+        while self._wait_for_line(Asked("go")).text.strip():
+            self.say("no answer is waited for now; Enter goes on")
 
     def _wait_for_line(self, asked: Asked) -> Line:
         """Wait for a line that is no command."""
@@ -517,15 +431,10 @@ class Runner:
             found = self.wait(asked)
         return found
 
-    def _wait_for_no_line(self) -> None:
-        """Wait a little, where no answer can be given yet."""
-        if self.wait(None) is None:
-            return
-        if self.is_shown:
-            coming = ordinal(self.stimulus + 1)
-            self.say(f"the {coming} has not been felt yet; repeat shows all from the first")
-        else:
-            self.say("no answer is waited for now; help lists what may be typed")
+    def _wait_idly(self, why: str) -> None:
+        """Wait a little, where no answer can be given yet; say why if one is."""
+        if self.wait(None) is not None:
+            self.say(why)
 
     def wait(self, asked: Asked | None) -> Line | None:
         """Take a line and what the device tells, do what is due; return a line that is no command.
@@ -540,42 +449,39 @@ class Runner:
         self.asked = asked
         if self._suspension.asked:
             self._suspend()
-        self.answers.awaits_key = self.reading
-        if self.is_shown and not self.answers.typed:
+        self._answers.awaits_key = self._reading
+        if self.is_shown and not self._answers.typed:
             self.presenter.press()  # answers that are not typed take no time to read paper
+        wait_s = POLL_S if self._real else 0.0
+        if not self.paused:
+            wait_s = min([wait_s, *(due_s - self.device.now_s for due_s in self._due_s.values())])
         # A file or a program is asked when the stimulus is read; a person may type at any time.
         is_due = not self.paused and (not self.is_shown or self.presenter.read)
-        found = self.answers.line(asked if is_due else None, self._wait_s())
+        found = self._answers.line(asked if is_due else None, max(wait_s, 0.0))
         self._poll()
         self._watch_time()
         self._look(self)
         if isinstance(found, Press):
-            self.end_reading(self._key)
+            self._end_reading(self._key)
         elif found is not None:
-            return self._obey(found, asked)
-        elif asked is not None and asked.what == "answer":
-            return self._controlled()
+            return self._obey(found)
+        elif asked is not None and asked.what == "answer" and self.is_shown and not self.paused:
+            return self._controlled(asked.trial)
         return None
 
-    def _obey(self, line: Line, asked: Asked | None) -> Line | None:
+    def _obey(self, line: Line) -> Line | None:
         """Do what a line says if it is a command, or Enter; else return it."""
         text = line.text.strip()
         if not text:
             return self._enter(line)
         word, _, rest = text.partition(" ")
         word, rest = word.lower(), rest.strip()
-        command = COMMANDS.get(word)
-        if command is None or (rest and not command.takes):
-            return line._replace(text=text)
-        if word == "answer":
+        if word == "answer" and rest:
             return line._replace(text=rest)
-        if word == "command":
-            command, rest = COMMANDS.get(rest.lower(), COMMANDS["help"]), ""
-        elif not rest and word in self._ambiguous and asked and asked.what == "answer":
-            said = f"type answer {text}, or command {word}"
-            self.say(f"{text} is a command, and a string here: {said}")
-            return None
-        command.does(self, rest)
+        if word not in COMMANDS or (rest and word not in WITH_TEXT):
+            return line._replace(text=text)
+        does, _ = COMMANDS[word]
+        does(self, rest)
         return None
 
     def _enter(self, line: Line) -> Line | None:
@@ -588,20 +494,18 @@ class Runner:
         elif self.is_shown and presenter.by_key and not presenter.read:
             if why := presenter.press():
                 self.say(f"too early: {why}")
-        elif self.reading and self._key == "key:enter":
-            self.end_reading(self._key)
+        elif self._reading and self._key == "key:enter":
+            self._end_reading(self._key)
         else:
             return line
         return None
 
-    def _wait_s(self) -> float:
-        """Return how long may be waited for a line."""
-        if not self._real:
-            return 0.0
-        exposure_s, since_s = self.protocol.trial.exposure_s, self._since_s.get("exposure")
-        if exposure_s is None or since_s is None or self.paused or not self.is_shown:
-            return POLL_S
-        return min(max(since_s + exposure_s - self.device.now_s, 0.0), POLL_S)
+    def _controlled(self, trial: Trial | None) -> Line | None:
+        """Return the line that a button or a knob of the device stands for, if one does."""
+        for control in self.device.take_controls():
+            if line := self.protocol.asks.controlled(control, trial):
+                return Line(line)
+        return None
 
     def _poll(self) -> None:
         """Take what the device and the conventional display tell."""
@@ -612,8 +516,8 @@ class Runner:
             return
         if ticks.size:
             self._record.add_ticks(ticks)
-        if self.pins is not None:
-            happenings += self.pins.poll()[1]
+        if self._pins is not None:
+            happenings += self._pins.poll()[1]
         # A fault may end the trial, and what else came with it is written before.
         for happening in sorted(happenings, key=lambda each: each.kind == "fault"):
             self._take(happening)
@@ -622,7 +526,7 @@ class Runner:
         """Write what the hand or the device did, and say it."""
         kind, at_s, data, said = happening
         if kind == "ended":
-            self.end_reading(data["by"], at_s)
+            self._end_reading(data["by"], at_s)
             return
         if kind == "fault" and not self.is_shown:
             return
@@ -630,8 +534,8 @@ class Runner:
         if said:
             self.say(said)
         if kind == "contact" and self.protocol.trial.exposure_from == "contact":
-            self._since_s["exposure"] = at_s
-        if kind == "read" and self.answers.typed and not self.more_to_come:
+            self._expect("exposure", at_s, self.protocol.trial.exposure_s)
+        if kind == "read" and self._answers.typed and not self._more_to_come:
             self.say(f"read: type the answer: {self.protocol.asks.typed}")
         if kind == "fault":
             repeats = self.protocol.faults.repeat
@@ -655,69 +559,55 @@ class Runner:
         if was_shown:
             raise Again
 
-    def _controlled(self) -> Line | None:
-        """Return the line that a button or a knob of the device stands for, if one does."""
-        for control in self.device.take_controls():
-            if self.trial is None or self.paused or not self.is_shown:
-                continue
-            if line := self.protocol.asks.controlled(control, self.trial):
-                return Line(line)
-        return None
-
     def _watch_time(self) -> None:
-        """Do what is due by the time since the cue."""
-        if not self.is_shown or self.paused:
-            return
-        pace = self.protocol.trial
-        if self._is_past("exposure", pace.exposure_s):
-            self.end_reading("exposure")
-        if self._is_past("warning", pace.warning_s):
-            self._play(Tone(*self.protocol.sound.warning))
-            self.log("warning")
-            self.say(f"warning: {self.name}, {pace.warning_s:g} s")
-        if self._is_past("answer", pace.answer_s):
-            if pace.late == "missed":
-                self.withdraw()
-                self.log("missed")
-                self.say(f"missed: {self.name}, no answer in {pace.answer_s:g} s")
-                self._free_s = self.device.now_s
-                raise Again
-            self._late = True
-            self.say(f"late: {self.name}, after {pace.answer_s:g} s")
+        """Do what is due by now."""
+        now_s, pace = self.device.now_s, self.protocol.trial
+        for what in [] if self.paused else [*self._due_s]:
+            if now_s < self._due_s[what]:
+                continue
+            del self._due_s[what]
+            match what:
+                case "break":
+                    self.say("break: its time is over; Enter goes on")
+                case "exposure":
+                    self._end_reading("exposure")
+                case "warning":
+                    self._play(Tone(*self.protocol.sound.warning))
+                    self.log("warning")
+                    self.say(f"warning: {self.name}, {pace.warning_s:g} s")
+                case "answer" if pace.late == "missed":
+                    self._withdraw()
+                    self.log("missed")
+                    self.say(f"missed: {self.name}, no answer in {pace.answer_s:g} s")
+                    self._free_s = now_s
+                    raise Again
+                case "answer":
+                    self._late = True
+                    self.say(f"late: {self.name}, after {pace.answer_s:g} s")
 
-    def _is_past(self, what: str, limit_s: float | None) -> bool:
-        """Tell, once, whether a time of the open trial is over."""
-        since_s = self._since_s.get(what)
-        if limit_s is None or since_s is None or self.device.now_s - since_s < limit_s:
-            return False
-        del self._since_s[what]
-        return True
-
-    def end_reading(self, by: str, at_s: float | None = None) -> None:
+    def _end_reading(self, by: str, at_s: float | None = None) -> None:
         """End reading of the stimulus that is shown, by the participant's key or by the time."""
-        if not self.reading:
+        if not self._reading:
             return
         at_s = self.device.now_s if at_s is None else at_s
         self.presenter.end_reading()
         self.log("ended", at_s, by=by)
-        self._since_s.pop("exposure", None)
-        said = by.replace(":", " ")
-        if self.more_to_come:
-            self.say(f"ended: the {ordinal(self.stimulus)}, by {said}")
-            return
-        self._ended_by = by
-        if self.protocol.trial.exposure_s is not None:
-            self._since_s["answer"] = at_s
-        typed = f"; type the answer: {self.protocol.asks.typed}" if self.answers.typed else ""
-        self.say(f"ended: {at_s - self._since_s['cue']:.2f} s, by {said}{typed}")
+        self._due_s.pop("exposure", None)
+        which, typed = f"the {ordinal(self.stimulus)}", ""
+        if not self._more_to_come:
+            which = "reading"
+            typed = f"; type the answer: {self.protocol.asks.typed}" if self._answers.typed else ""
+            if self.protocol.trial.exposure_s is not None:
+                self._expect("answer", at_s, self.protocol.trial.answer_s)
+        self.say(f"ended: {which}, by {by.replace(':', ' ')}{typed}")
 
     def _watch_key(self) -> None:
         """Look out for the participant's key, or say that Enter is pressed instead."""
         self._key, key = self.protocol.trial.end or "", self.protocol.trial.key
-        if not key or self._key == "key:enter" or not self.answers.typed:
+        if not key or self._key == "key:enter" or not self._answers.typed:
             return
         name = self._key.removeprefix("key:")
-        if self.answers.watch(key):
+        if self._answers.watch(key):
             self.say(f"key: {name} ends reading, with no Enter after it")
         else:
             self._key = "key:enter"
@@ -727,42 +617,19 @@ class Runner:
         """Pause, and stop the process; afterwards Enter ends the pause."""
         was_paused = self.paused
         self.pause()
-        self.answers.release()
+        self._answers.release()
         self._suspension.stop()
-        self.answers.take()
-        if not was_paused and not self.answers.typed:
+        self._answers.take()
+        if not was_paused and not self._answers.typed:
             self.go()
 
-    def pause(self) -> None:
-        """Bring the array to rest."""
-        if self.paused:
-            return
-        self.paused, self._paused_s = True, self.device.now_s
-        self._rest()
-        self.log("pause")
-        self.say("pause: the array is at rest; Enter goes on")
-
-    def _rest(self) -> None:
-        self.device.rest()
-        if self.pins is not None:
-            self.pins.rest()
-
-    def go(self) -> None:
-        """Go on after a pause."""
-        self.paused = False
-        away_s = self.device.now_s - self._paused_s
-        self._since_s = {what: since_s + away_s for what, since_s in self._since_s.items()}
-        if self.is_shown:
-            self.presenter.go()
-        self.log("go")
-        self.say("go: on")
-
-    def withdraw(self) -> None:
+    def _withdraw(self) -> None:
         """Take the stimulus away."""
         self.device.withdraw()
-        if self.pins is not None:
-            self.pins.withdraw()
+        if self._pins is not None:
+            self._pins.withdraw()
         self.is_shown = self.paused = False
+        self._due_s.clear()
 
     def log(self, kind: str, at_s: float | None = None, **data: Any) -> None:
         """Write an event, of the open trial if there is one; it is on the disk then."""
@@ -774,133 +641,123 @@ class Runner:
     def _elapsed_s(self, at_s: float) -> float:
         return self._before_s + at_s - self._began_s
 
+    # Commands, which may be typed beside answers.
+
+    def undo(self, _: str) -> None:
+        """Take back the newest answer or reply."""
+        newest = self.progress.newest_given
+        if newest is None:
+            self.say("undo: there is no answer to take back")
+            return
+        data: dict[str, Any] = {}
+        if newest.kind == "reply":
+            self.trial = None
+            data = {name: newest.data[name] for name in ("name", "number")}
+        else:
+            self._withdraw()
+            trials = self.progress.plan.trials
+            self.trial = next(trial for trial in trials if trial.key == newest.key)
+            self.attempt = self.progress.tried[self.trial.key].attempts
+        self.log("undo", **data)
+        raise Again
+
+    def repeat(self, _: str) -> None:
+        """Show the open trial again."""
+        if not self.is_shown:
+            self.say("repeat: no trial is open")
+            return
+        self.log("repeat")
+        raise Again
+
+    def note(self, text: str) -> None:
+        """Write a note."""
+        if not text:
+            self.say("note: type the note after the word")
+            return
+        self.log("note", text=text)
+        self.say("note: is in")
+
+    def pause(self, _: str = "") -> None:
+        """Bring the array to rest."""
+        if not self.paused:
+            self.paused, self._paused_s = True, self.device.now_s
+            self.device.rest()
+            if self._pins is not None:
+                self._pins.rest()
+            self.log("pause")
+        self.say("pause: the array is at rest; Enter goes on")
+
+    def go(self, _: str = "") -> None:
+        """Go on after a pause."""
+        if not self.paused:
+            self.say("go: nothing is paused; if it is the answer, type answer go")
+            return
+        self.paused = False
+        away_s = self.device.now_s - self._paused_s
+        self._due_s = {what: due_s + away_s for what, due_s in self._due_s.items()}
+        if self.is_shown:
+            self.presenter.go()
+        self.log("go")
+        self.say("go: on")
+
+    def have_break(self, _: str) -> None:
+        """Have a break as soon as no trial is open."""
+        self._break_wanted = True
+        if not self.is_shown:
+            raise Again
+        self.say("break: after this trial")
+
+    def begin(self, _: str) -> None:
+        """End practice."""
+        if self.progress.practice_is_over:
+            self.say("begin: practice is over already")
+            return
+        self._withdraw()
+        self.trial = None
+        self.log("begin")
+        raise Again
+
+    def stop(self, _: str) -> None:
+        """Stop for now."""
+        raise Over("stop", "stopped by the experimenter")
+
+    def quit(self, reason: str) -> None:
+        """End the session for good."""
+        if not reason:
+            self.say("quit: type the reason after the word; stop ends for now alone")
+            return
+        raise Over("end", "the participant stopped", reason=reason)
+
+    def help(self, _: str) -> None:
+        """List what may be typed."""
+        asks, item = self.protocol.asks, self.asked and self.asked.item
+        if item:
+            self.say(f"question: {item.ask} Type {item.typed}")
+        elif asks.ask:
+            self.say(f"question: {asks.ask}")
+        self.say(f"an answer: {asks.typed}")
+        if (scale := asks.confidence) is not None:
+            self.say(f"confidence: {scale.least} to {scale.most}, after the answer or a semicolon")
+        self.say("answer: before an answer that is also a command, such as answer pause")
+        self.say("Enter: go on after a pause or a break")
+        for word in COMMANDS:
+            self.say(f"{word}: {COMMANDS[word][1]}")
+
 
 def _numbered(line: Line) -> dict[str, int]:
     return {"script_line": line.number} if line.number else {}
 
 
-# Commands, which may be typed beside answers.
-
-
-class Command(NamedTuple):
-    """A command.
-
-    Parameters
-    ----------
-    does
-        Function that does it, given the runner and the text after the word.
-    help
-        What it does.
-    takes
-        Whether text may follow the word; a line with such a text is an answer otherwise.
-    """
-
-    does: Callable[[Runner, str], None]
-    help: str
-    takes: bool = False
-
-
-def _undo(runner: Runner, _: str) -> None:
-    newest = runner.progress.newest_given
-    if newest is None:
-        runner.say("undo: there is no answer to take back")
-        return
-    if newest.kind == "reply":
-        runner.trial = None
-        runner.log("undo", name=newest.data["name"], number=newest.data["number"])
-        raise Again
-    runner.withdraw()
-    trial = next(each for each in runner.progress.plan.trials if each.key == newest.key)
-    runner.trial, runner.attempt = trial, runner.progress.attempts(trial)
-    runner.log("undo")
-    raise Again
-
-
-def _repeat(runner: Runner, _: str) -> None:
-    if not runner.is_shown:
-        runner.say("repeat: no trial is open")
-        return
-    runner.log("repeat")
-    raise Again
-
-
-def _note(runner: Runner, text: str) -> None:
-    if not text:
-        runner.say("note: type the note after the word")
-        return
-    runner.log("note", text=text)
-    runner.say("note: is in")
-
-
-def _pause(runner: Runner, _: str) -> None:
-    if runner.paused:
-        runner.go()
-    else:
-        runner.pause()
-
-
-def _go(runner: Runner, _: str) -> None:
-    if runner.paused:
-        runner.go()
-    else:
-        runner.say("go: nothing is paused; if it is the answer, type answer go")
-
-
-def _break(runner: Runner, _: str) -> None:
-    runner.break_wanted = True
-    if runner.trial is None or runner.is_shown or runner.progress.lacks_confidence(runner.trial):
-        runner.say("break: after this trial")
-    else:
-        raise Again
-
-
-def _begin(runner: Runner, _: str) -> None:
-    if runner.progress.practice_is_over:
-        runner.say("begin: practice is over already")
-        return
-    runner.withdraw()
-    runner.trial = None
-    runner.log("begin")
-    raise Again
-
-
-def _stop(_runner: Runner, _: str) -> None:
-    raise Over("stop", "stopped by the experimenter")
-
-
-def _quit(runner: Runner, reason: str) -> None:
-    if not reason:
-        runner.say("quit: type the reason after the word; stop ends for now alone")
-        return
-    raise Over("end", "the participant stopped", reason=reason)
-
-
-def _help(runner: Runner, _: str) -> None:
-    asks, asked = runner.protocol.asks, runner.asked
-    if asked is not None and asked.item is not None:
-        runner.say(f"question: {asked.item.ask} Type {asked.item.typed}")
-    elif asks.ask:
-        runner.say(f"question: {asks.ask}")
-    runner.say(f"an answer: {asks.typed}")
-    if asks.confidence is not None:
-        least, most = asks.confidence.least, asks.confidence.most
-        runner.say(f"confidence: {least} to {most}, after the answer or after a semicolon")
-    runner.say("Enter: go on after a pause or a break")
-    for word, command in COMMANDS.items():
-        runner.say(f"{word}: {command.help}")
-
-
-COMMANDS: dict[str, Command] = {
-    "answer": Command(nothing, "before an answer that is also a command", takes=True),
-    "command": Command(nothing, "before a command that is also a string", takes=True),
-    "undo": Command(_undo, "take back the last answer, and type it again"),
-    "repeat": Command(_repeat, "show the open trial again, from its start"),
-    "note": Command(_note, "write the rest of the line into the record", takes=True),
-    "pause": Command(_pause, "bring the array to rest; Enter goes on"),
-    "go": Command(_go, "go on after a pause"),
-    "break": Command(_break, "have a break after the open trial"),
-    "begin": Command(_begin, "end practice"),
-    "stop": Command(_stop, "stop for now; session resume goes on"),
-    "quit": Command(_quit, "end for good; the participant's reason after it", takes=True),
-    "help": Command(_help, "list what may be typed"),
+COMMANDS: dict[str, tuple[Callable[[Runner, str], None], str]] = {
+    "undo": (Runner.undo, "take back the last answer, and type it again"),
+    "repeat": (Runner.repeat, "show the open trial again, from its start"),
+    "note": (Runner.note, "write the rest of the line into the record"),
+    "pause": (Runner.pause, "bring the array to rest; Enter goes on"),
+    "go": (Runner.go, "go on after a pause"),
+    "break": (Runner.have_break, "have a break after the open trial"),
+    "begin": (Runner.begin, "end practice"),
+    "stop": (Runner.stop, "stop for now; session resume goes on"),
+    "quit": (Runner.quit, "end for good; the participant's reason after it"),
+    "help": (Runner.help, "list what may be typed"),
 }
+WITH_TEXT = ("note", "quit")
