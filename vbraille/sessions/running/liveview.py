@@ -137,7 +137,7 @@ class SessionView:
 
     def _state(self, runner: Runner, device: SessionDevice) -> ViewState:
         """Return what pages show."""
-        protocol, trial, newest = runner.protocol, runner.trial, device.newest
+        protocol, trial, newest = runner.protocol, runner.trial, device.engine.newest
         style, facts = protocol.style(protocol.display), []
         if trial is not None:
             facts.append(("trial", runner.name))
