@@ -32,7 +32,6 @@ FORMAT = 3
 CHUNK_FRAMES = 1024
 _CHUNK_LINES = 64
 _TEXT: Final = h5py.string_dtype()
-_AXES: Final = ("column", "row")
 _MAPPINGS: Final = MAPPINGS | {m.name: m for m in map(single_row, (1, 2, 3))}
 NUMBERS: Final = ("t_s", "x_mm", "y_mm", "theta_rad", "line", "part")
 _SCENE: Final = ("title", "description", "width_mm", "height_mm")
@@ -156,6 +155,7 @@ class Recorder:
         self._file.attrs.update(
             model=model.name,
             mapping=model.style.mapping.name if scene is None else "",
+            display=json.dumps(asdict(replace(model.display, rate_hz=rate_hz))),
             geometry=json.dumps(asdict(model.style.geometry)),
             tuning=json.dumps(asdict(model.style.tuning)),
             rate_hz=rate_hz,
@@ -365,31 +365,20 @@ def model_in(file: h5py.File) -> Model:
     ValueError
         If the display is of another shape than the frames.
     """
-    columns_mm, rows_mm = (np.asarray(file.attrs[f"{n}_offset_mm"], float) for n in _AXES)
-    if (rows_mm.size, columns_mm.size) != dataset_in(file, "frames").shape[1:]:
+    told = {name: json.loads(str(file.attrs[name])) for name in ("display", "geometry", "tuning")}
+    display = Display(**told["display"])
+    if display.shape != dataset_in(file, "frames").shape[1:]:
         raise ValueError("the frames are of another display")
-    name = str(file.attrs.get("model", "not known"))
-    model = MODELS.get(name)
-    geometry = Geometry(**json.loads(str(file.attrs.get("geometry", "{}"))))
-    display = Display(
-        name,
-        rows_mm.size,
-        columns_mm.size,
-        float(columns_mm[1]) if columns_mm.size > 1 else 1.0,
-        float(rows_mm[1]) if rows_mm.size > 1 else 1.0,
-        rest_side="right" if model is None else model.display.rest_side,
-        travel_mm=geometry.travel_mm,
-        rate_hz=float(np.asarray(file.attrs["rate_hz"])),
-    )
-    mapping = _MAPPINGS.get(str(file.attrs.get("mapping", "")))
+    name = str(file.attrs["model"])
+    model, mapping = MODELS.get(name), _MAPPINGS.get(str(file.attrs["mapping"]))
     if model is None or (mapping is None and "scene" not in file):
         return replace(model_of(display), name="", title=name, display=display)
     style = model.style
     if mapping is not None:
-        tuning = Tuning(**json.loads(str(file.attrs["tuning"])))
+        geometry, tuning = Geometry(**told["geometry"]), Tuning(**told["tuning"])
         style = replace(style, mapping=mapping, geometry=geometry, tuning=tuning)
         style.rows_on(display)
-    return replace(model, display=replace(display, name=model.title), style=style)
+    return replace(model, display=display, style=style)
 
 
 def scene_of(file: h5py.File) -> SceneRecorded | None:

@@ -17,10 +17,16 @@ from vbraille.render import STRESS2_8X8, Straying
 from vbraille.render.compiling import compile_scene
 from vbraille.render.figures import FigureAt, page_with_figures
 from vbraille.render.labels import Assets
-from vbraille.scene.patterns import Circle, Fill, Polygon, StraightLine
+from vbraille.scene.patterns import (
+    Circle,
+    Fill,
+    LinearGrating,
+    Polygon,
+    StraightLine,
+    Stroke,
+    UniformVibration,
+)
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Stroke
-from vbraille.scene.textures import LinearGrating, UniformVibration
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -10,20 +10,28 @@ from vbraille.display import Display
 from vbraille.render.labels import Assets
 from vbraille.scene.bitmap import Bitmap
 from vbraille.scene.patterns import (
+    Across,
+    Along,
+    AxialGrating,
     Circle,
     Dots,
+    DotStyle,
+    Dotting,
     Fill,
     Group,
     Image,
+    LinearGrating,
     Moving,
+    MovingCue,
     PathShape,
     Polygon,
+    RadialGrating,
     StraightLine,
+    Stroke,
+    UniformVibration,
 )
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch
-from vbraille.scene.strokes import Across, Along, DotStyle, Dotting, MovingCue, Stroke
-from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, UniformVibration
 
 # The display of the source's own measurements: Lévesque 2009, 6.2.
 DISPLAY = Display("8 × 8", 8, 8, 1.2, 1.4, travel_mm=220.0, height_mm=150.0, turns=True)

@@ -9,26 +9,26 @@ from vbraille.pictures.loading import with_assets
 from vbraille.render import MODELS
 from vbraille.scene.locations import Locations, OpenedScene
 from vbraille.scene.patterns import (
+    Along,
     Circle,
+    Dotting,
     Fill,
     Group,
+    LinearGrating,
     Moving,
+    MovingCue,
     Polygon,
+    Stroke,
     Tile,
+    Uniform,
+    UniformVibration,
     Use,
+    VertexMarkers,
+    Vibration,
 )
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import Inverse, Pulse, Speed, Switch
-from vbraille.scene.strokes import (
-    Along,
-    Dotting,
-    MovingCue,
-    Stroke,
-    VertexMarkers,
-    Vibration,
-)
-from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
 
 LATERO = Canvas(width_mm=280, height_mm=217)
 MID = Vibration(frequency_hz=25.0)

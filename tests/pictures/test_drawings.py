@@ -21,10 +21,16 @@ from vbraille.pictures.figurefiles import to_bytes
 from vbraille.pictures.scenes import map_deflections
 from vbraille.render import LATERO, STRESS2_8X8, VBD
 from vbraille.render.labels import Assets
-from vbraille.scene.patterns import Circle, Fill, Polygon, StraightLine
+from vbraille.scene.patterns import (
+    Circle,
+    Fill,
+    LinearGrating,
+    Polygon,
+    StraightLine,
+    Stroke,
+    Vibration,
+)
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Stroke, Vibration
-from vbraille.scene.textures import LinearGrating
 
 CANVAS = Canvas(width_mm=60, height_mm=50)
 

@@ -9,10 +9,20 @@ from tests.render.scene.twin import opacity
 from vbraille.pictures.index import SceneIndex
 from vbraille.render.compiling import SceneMap
 from vbraille.render.labels import Assets
-from vbraille.scene.patterns import Circle, Dots, Fill, Group, Polygon, StraightLine
+from vbraille.scene.patterns import (
+    Along,
+    Circle,
+    Dots,
+    DotStyle,
+    Fill,
+    Group,
+    LinearGrating,
+    Polygon,
+    StraightLine,
+    Stroke,
+    Uniform,
+)
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Along, DotStyle, Stroke
-from vbraille.scene.textures import LinearGrating, Uniform
 
 GRATING = LinearGrating(ridge_mm=2, gap_mm=2)
 AROUND = tuple(

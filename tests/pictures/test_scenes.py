@@ -9,11 +9,19 @@ from PIL import Image
 from vbraille.pictures.scenes import hidden_layers, small_png
 from vbraille.render.compiling import settled
 from vbraille.render.labels import Assets
-from vbraille.scene.patterns import Circle, Fill, Group, Polygon
+from vbraille.scene.patterns import (
+    Circle,
+    Fill,
+    Group,
+    LinearGrating,
+    Polygon,
+    RadialGrating,
+    SignalLevel,
+    Stroke,
+    Uniform,
+)
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import Inverse, Speed, Switch, packed
-from vbraille.scene.strokes import Stroke
-from vbraille.scene.textures import LinearGrating, RadialGrating, SignalLevel, Uniform
 
 
 def drawn(canvas, *elements):

@@ -4,11 +4,26 @@ import pytest
 
 from vbraille.pictures.scenes import slowest_s
 from vbraille.pictures.scenewords import pattern_words, scene_lines
-from vbraille.scene.patterns import Circle, Fill, Group, Image, Label, Moving, Polygon, StraightLine
+from vbraille.scene.patterns import (
+    Along,
+    Circle,
+    Dotting,
+    Fill,
+    Group,
+    Image,
+    Label,
+    LinearGrating,
+    Moving,
+    Polygon,
+    SignalLevel,
+    StraightLine,
+    Stroke,
+    Uniform,
+    UniformVibration,
+    Vibration,
+)
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch
-from vbraille.scene.strokes import Along, Dotting, Stroke, Vibration
-from vbraille.scene.textures import LinearGrating, SignalLevel, Uniform, UniformVibration
 
 CANVAS = Canvas(width_mm=100, height_mm=80)
 

@@ -6,7 +6,7 @@
 import textwrap
 from pathlib import Path
 
-from vbraille.scene.pattern import Pattern
+from vbraille.scene.patterns import Pattern
 from vbraille.scene.reading import SceneFile
 from vbraille.scene.schema import scene_schema, summary, tables_of, told
 

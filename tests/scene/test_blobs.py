@@ -8,10 +8,9 @@ from PIL import Image as Pillow
 
 from vbraille.errors import InputError
 from vbraille.scene.images import dots_of
-from vbraille.scene.patterns import Dots, Group, ImageDots
+from vbraille.scene.patterns import Dots, DotStyle, Group, ImageDots, Vibration
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import DotStyle, Vibration
 
 
 def saved(folder, values):

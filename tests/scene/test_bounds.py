@@ -8,21 +8,23 @@ from tests.render.scene import twin as reference
 from tests.render.scene.scenes import examples, patterns, seeds
 from tests.render.scene.showing import assets_of, bitmap_of, known_boxes
 from vbraille.scene.bitmap import WHOLE, Bitmap, bitmap_box, opaque
-from vbraille.scene.bounds import EMPTY, Box, bounds
+from vbraille.scene.geometry import EMPTY, Box, bounds
 from vbraille.scene.patterns import (
     Circle,
     Dots,
+    DotStyle,
+    Dotting,
     Fill,
     Group,
     Image,
     ImageDots,
     PathShape,
     StraightLine,
+    Stroke,
     Tile,
+    Uniform,
     Use,
 )
-from vbraille.scene.strokes import DotStyle, Dotting, Stroke
-from vbraille.scene.textures import Uniform
 
 STROKE = Stroke(width_mm=4)
 LINE = StraightLine(start_mm=(10, 20), end_mm=(30, 25), stroke=STROKE)

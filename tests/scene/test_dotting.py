@@ -9,10 +9,17 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from tests.tiers import examples
-from vbraille.scene.dotting import dots_of, most_dots_of
-from vbraille.scene.intersections import meeting_edges
-from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
-from vbraille.scene.strokes import DotStyle, Dotting, Stroke
+from vbraille.scene.geometry import dots_of, most_dots_of
+from vbraille.scene.patterns import (
+    Circle,
+    DotStyle,
+    Dotting,
+    PathShape,
+    Polygon,
+    StraightLine,
+    Stroke,
+    meeting_edges,
+)
 
 DOTTING = Dotting()  # a radius of 1 mm, and 1 mm between: m = 3 mm
 

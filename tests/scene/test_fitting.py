@@ -6,10 +6,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vbraille.scene.joints import Cycle, axial_cycle, fitted, path_lengths_mm, stroke_cycles
-from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
-from vbraille.scene.strokes import Along, Stroke
-from vbraille.scene.textures import AxialGrating, TurnPeak
+from vbraille.scene.geometry import Cycle, axial_cycle, fitted, path_lengths_mm, stroke_cycles
+from vbraille.scene.patterns import (
+    Along,
+    AxialGrating,
+    Circle,
+    PathShape,
+    Polygon,
+    StraightLine,
+    Stroke,
+    TurnPeak,
+)
 
 ALONG = Stroke(width_mm=4, along=Along(ridge_mm=2, gap_mm=1))
 SQUARE = ((0, 0), (30, 0), (30, 30), (0, 30))

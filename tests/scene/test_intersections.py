@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from vbraille.scene import intersections
-from vbraille.scene.intersections import meeting_edges
+from vbraille.scene import patterns
+from vbraille.scene.patterns import meeting_edges
 
 
 def ring(number, wobble=0.0):
@@ -90,6 +90,6 @@ def boxes_meet(one, other):
 
 
 def test_examples():
-    tried = doctest.testmod(intersections)
+    tried = doctest.testmod(patterns)
     assert tried.attempted
     assert not tried.failed

@@ -6,9 +6,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from vbraille.scene.joints import joint, marker_half_angle_rad, places_along_mm
-from vbraille.scene.patterns import Polygon
-from vbraille.scene.strokes import Stroke, VertexMarkers
+from vbraille.scene.geometry import joint, marker_half_angle_rad, places_along_mm
+from vbraille.scene.patterns import Polygon, Stroke, VertexMarkers
 
 SQUARE = ((0, 0), (30, 0), (30, 30), (0, 30))
 

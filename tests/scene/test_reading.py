@@ -13,10 +13,9 @@ from hypothesis import strategies as st
 
 from vbraille.errors import InputError
 from vbraille.scene.converting import write_scene
-from vbraille.scene.patterns import Circle
+from vbraille.scene.patterns import Circle, Stroke
 from vbraille.scene.reading import MOST_BYTES, open_scene
 from vbraille.scene.signals import Speed
-from vbraille.scene.strokes import Stroke
 
 CANVAS = "[canvas]\nwidth_mm = 200\nheight_mm = 100\n"
 CIRCLE = '[[elements]]\nkind = "circle"\ncenter_mm = [10, 20]\nradius_mm = 5\n'

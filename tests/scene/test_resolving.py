@@ -18,13 +18,14 @@ from vbraille.scene.patterns import (
     Image,
     PathShape,
     StraightLine,
+    Stroke,
     Tile,
+    Uniform,
     Use,
+    Vibration,
 )
 from vbraille.scene.resolving import MOST_DEPTH, resolve
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Stroke, Vibration
-from vbraille.scene.textures import Uniform
 from vbraille.scene.traversal import ONE, SEVERAL, moved, with_children
 
 CANVAS = Canvas(width_mm=200, height_mm=100)

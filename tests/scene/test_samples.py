@@ -10,7 +10,7 @@ from vbraille.pictures.index import SceneIndex
 from vbraille.pictures.loading import load_scene
 from vbraille.render import MODELS
 from vbraille.render.compiling import SceneMap
-from vbraille.scene.bounds import around
+from vbraille.scene.geometry import around
 from vbraille.scene.patterns import Circle, Polygon
 from vbraille.scene.signals import packed
 

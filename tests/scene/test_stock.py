@@ -2,20 +2,24 @@
 
 from msgspec.structs import replace
 
-from vbraille.scene.patterns import Group, Polygon, Tile, Use
+from vbraille.scene.patterns import (
+    AxialGrating,
+    Gradual,
+    Group,
+    LinearGrating,
+    Peak,
+    Polygon,
+    RadialGrating,
+    Stroke,
+    Tile,
+    TurnPeak,
+    UniformVibration,
+    Use,
+    Vibration,
+)
 from vbraille.scene.resolving import resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.stock import STOCK, stock_text, stock_textures
-from vbraille.scene.strokes import Stroke, Vibration
-from vbraille.scene.textures import (
-    AxialGrating,
-    Gradual,
-    LinearGrating,
-    Peak,
-    RadialGrating,
-    TurnPeak,
-    UniformVibration,
-)
 from vbraille.scene.traversal import mapped
 
 MIDDLE = (0, 0)

@@ -10,11 +10,23 @@ from tests.render.scene.scenes import scenes
 from tests.tiers import examples
 from vbraille.errors import InputError
 from vbraille.scene.converting import LONGEST, write_scene
-from vbraille.scene.patterns import Circle, Group, Image, PathShape, Polygon, StraightLine, Use
+from vbraille.scene.patterns import (
+    Circle,
+    Group,
+    Image,
+    LinearGrating,
+    PathShape,
+    Peak,
+    Polygon,
+    StraightLine,
+    Stroke,
+    Uniform,
+    Use,
+    VertexMarkers,
+    Vibration,
+)
 from vbraille.scene.reading import open_scene
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Stroke, VertexMarkers, Vibration
-from vbraille.scene.textures import LinearGrating, Peak, Uniform
 from vbraille.toml import TomlFile
 
 CANVAS = Canvas(width_mm=100, height_mm=80)

@@ -9,24 +9,23 @@ from vbraille.render.braille.models import STRESS2
 from vbraille.scene.patterns import (
     Circle,
     Dots,
+    Dotting,
     Fill,
+    Gradual,
     Group,
     Label,
-    Moving,
-    StraightLine,
-    Tile,
-)
-from vbraille.scene.reading import open_scene
-from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Dotting, Stroke
-from vbraille.scene.textures import (
-    Gradual,
     LinearGrating,
+    Moving,
     Peak,
     RadialGrating,
+    StraightLine,
+    Stroke,
+    Tile,
     Uniform,
     UniformVibration,
 )
+from vbraille.scene.reading import open_scene
+from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.zooming import zoomed
 
 CANVAS = Canvas(width_mm=100, height_mm=60)

@@ -1,1 +1,1 @@
-"""Questions chosen by the answers: staircases, QUEST+, and estimates on a grid."""
+"""Questions chosen by the answers: QUEST+, and estimates on a grid."""

@@ -118,6 +118,15 @@ class Button(Event, frozen=True):
     at_ns: int | None = None
 
 
+def moved(before: int, now: int, count: int, at_ns: int) -> list[Event]:
+    """Tell of the buttons whose bits differ, of the first so many."""
+    return [
+        Button(bit + 1, pressed=bool(now >> bit & 1), at_ns=at_ns)
+        for bit in range(count)
+        if (before ^ now) >> bit & 1
+    ]
+
+
 class Knob(Event, frozen=True):
     """A knob of the device was turned to a position from 0 to 1; knobs are counted from 1."""
 
@@ -266,13 +275,12 @@ def placing_sentence(placing: Placing, display: Display, *, press: str = "press 
     press
         How the reader says that the carriage is there.
     """
+    if placing is Placing.DONE:
+        return "place: known"
     left = "left to the stop"
     if display.height_mm:
         left = f"to {shown_place(display)}, with the array straight"
-    return {
-        Placing.DONE: "place: known",
-        Placing.STOP: f"place: move {left}, then {press}",
-    }[placing]
+    return f"place: move {left}, then {press}"
 
 
 class Throttle:

@@ -10,6 +10,7 @@ import errno
 import fcntl
 import grp
 import os
+import re
 import socket
 import stat
 import termios
@@ -74,26 +75,19 @@ def parse_address(text: str, **usual: float) -> Address:
     where, _, query = text.partition("?")
     if not where:
         raise InputError(f"serial: needs a port, as in serial:/dev/ttyACM0; {ports_said()}")
-    with suppress(ValueError):  # of a port that is no number
-        parts = urlsplit(where)
-        if not parts.scheme or (parts.scheme == "socket" and parts.hostname and parts.port):
-            return Address(where, *_options(query, {"baud": BAUD, **usual}))
-    raise InputError(f"{where} is no port; give a path, or socket://HOST:PORT")
-
-
-def _options(query: str, options: dict[str, float]) -> tuple[int, dict[str, float]]:
-    """Baud and the other options that an address has, the usual ones given."""
+    if "://" in where and not re.fullmatch(r"socket://[^/]+:[0-9]{1,5}", where):
+        raise InputError(f"{where} is no port; give a path, or socket://HOST:PORT")
+    options = {"baud": BAUD, **usual}
     for name, value in parse_qsl(query, keep_blank_values=True):
         if name not in options:
             raise InputError(f"unknown option {name!r} of a port; known: {', '.join(options)}")
         low, high = _BAUD_RANGE if name == "baud" else (0, 60)
-        try:
+        with suppress(ValueError):
             options[name] = float(value)
-        except ValueError:
-            options[name] = -1
-        if not low <= options[name] <= high:
-            raise InputError(f"{name} is {value!r}; it must be a number from {low} to {high}")
-    return int(options.pop("baud")), options
+            if low <= options[name] <= high:
+                continue
+        raise InputError(f"{name} is {value!r}; it must be a number from {low} to {high}")
+    return Address(where, int(options.pop("baud")), options)
 
 
 def ports_said() -> str:
@@ -231,18 +225,20 @@ def usb_identity(path: str) -> tuple[object, ...] | None:
     Of a device with several ports it tells them apart.
     """
     real = os.path.realpath(path)
-    return next((identity for port, identity in _plugged() if port == real), None)
+    return next((identity for identity, port in _plugged().items() if port == real), None)
 
 
-def _plugged() -> list[tuple[str, tuple[object, ...]]]:
-    """Ports of this computer, each with what tells it from others, if anything does."""
+def _plugged() -> dict[tuple[object, ...], str]:
+    """Ports of this computer, by what tells each from others; those without that are left out."""
     from serial.tools import list_ports
 
-    return [
-        (each.device, (each.vid, each.pid, number, (each.location or "").partition(":")[2]))
-        for each in list_ports.comports()
-        if (number := each.serial_number)
-    ]
+    return {
+        (port.vid, port.pid, port.serial_number, (port.location or "").partition(":")[2]): (
+            port.device
+        )
+        for port in list_ports.comports()
+        if port.serial_number
+    }
 
 
 def find_again(address: Address, identity: tuple[object, ...] | None) -> Address:
@@ -250,12 +246,7 @@ def find_again(address: Address, identity: tuple[object, ...] | None) -> Address
 
     Raises
     ------
-    OSError
+    KeyError
         If no device of that identity is plugged in: another one may be at its old path.
     """
-    if identity is None:
-        return address
-    for port, found in _plugged():
-        if found == identity:
-            return replace(address, where=port)
-    raise OSError(errno.ENODEV, "not plugged in")
+    return address if identity is None else replace(address, where=_plugged()[identity])

@@ -19,13 +19,13 @@ from cobs import cobs
 
 from vbraille.devices.events import (
     Back,
-    Button,
     Event,
     Knob,
     Notice,
     Silent,
     SlowActuators,
     WatchdogTripped,
+    moved,
 )
 from vbraille.display import Display, Pose
 from vbraille.errors import DeviceError
@@ -61,26 +61,24 @@ _STATE: Final = struct.Struct("<BHIiiiHB")  # without what `State.others` has
 _NUMBERED: Final = struct.Struct("<BH")
 
 _Text = Annotated[str, msgspec.Meta(max_length=200)]
-_Pitch = Annotated[float, msgspec.Meta(ge=0.05, le=50)]
-_Travel = Annotated[float, msgspec.Meta(gt=0, le=10_000)]
-_Counts = Annotated[float, msgspec.Meta(ge=-1e6, le=1e6)]
+_Axes = msgspec.Meta(min_length=1, max_length=2)
 
 
 class Info(msgspec.Struct, frozen=True):
     """Description of a device by itself: the keys of INFO, which the protocol's page describes."""
 
     name: Annotated[str, msgspec.Meta(min_length=1, max_length=200)]
-    rows: Annotated[int, msgspec.Meta(ge=1, le=MOST_ACTUATORS)]
-    columns: Annotated[int, msgspec.Meta(ge=1, le=MOST_ACTUATORS)]
-    pitch_mm: tuple[_Pitch, _Pitch]
+    rows: int
+    columns: int
+    pitch_mm: tuple[float, float]
     rest: Literal["left", "right"]
     top: Annotated[int, msgspec.Meta(ge=1, le=1023)]
-    fast: Annotated[int, msgspec.Meta(ge=1, le=1023)]
+    fast: int
     rate: Annotated[int, msgspec.Meta(ge=50, le=1000)]
-    counts_per_mm: Annotated[list[_Counts], msgspec.Meta(min_length=1, max_length=2)]
-    travel_mm: Annotated[list[_Travel], msgspec.Meta(min_length=1, max_length=2)]
+    counts_per_mm: Annotated[list[float], _Axes]
+    travel_mm: Annotated[list[Annotated[float, msgspec.Meta(le=10_000)]], _Axes]
     serial: _Text = ""
-    counts_per_turn: _Counts = 0
+    counts_per_turn: float = 0
     buttons: Annotated[int, msgspec.Meta(ge=0, le=8)] = 0
     knobs: Annotated[int, msgspec.Meta(ge=0, le=4)] = 0
     analog: Annotated[list[_Text], msgspec.Meta(max_length=8)] = []
@@ -511,10 +509,7 @@ class Conversation:
         """Tell of buttons that are pressed now and were not, or the other way round."""
         before = buttons if self._buttons is None else self._buttons
         self._buttons = buttons
-        for bit in range(self.info.buttons if self.info else 0):
-            if (before ^ buttons) >> bit & 1:
-                pressed = bool(buttons >> bit & 1)
-                self.events.append(Button(bit + 1, pressed, at_ns=now_ns))
+        self.events += moved(before, buttons, self.info.buttons if self.info else 0, now_ns)
 
     def _follow(self, state: State, now_ns: int) -> None:
         """Go from stage to stage by what a STATE says."""

@@ -224,7 +224,7 @@ class SerialDevice(Device):
             return False
         try:
             self._line = Line(find_again(self._address, self._identity))
-        except (VbrailleError, OSError):
+        except (VbrailleError, OSError, KeyError):
             self._look_ns = self._now_ns() + _AGAIN_NS
             return False
         self._away, self.descriptor = False, self._line.descriptor

@@ -10,7 +10,6 @@ import math
 import os
 import socket
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -54,38 +53,6 @@ _LATENCY = (
     "set the latency timer of its adapter to 1 ms (echo 1 | sudo tee "
     "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer), as docs/building.md says"
 )
-
-
-@dataclass(slots=True)
-class Checkup:
-    """Result of a checkup, filled as it goes on.
-
-    Parameters
-    ----------
-    values
-        What was measured, by name. ``ticks`` and ``late``: how many ticks were done, and how many
-        came too late. ``host_ms``, ``device_ms`` and ``line_ms``: greatest lateness of the
-        computer, of the device by its own clock, and of the line. ``held_ms``: usual time from
-        poses to the next poses that came; 0 if they came one by one. ``clock_s``: seconds that the
-        device's clock goes on in one of the computer's. ``x_mm``: leftmost and rightmost place of
-        the array's centre. ``round_trips_ms``: first percentile, median and 99th. ``trips_ms``: for
-        each time without frames, when the watchdog's trip was reported, or None. ``counts``: faults
-        by name, as the device and its line count them. What could not be measured is missing.
-    wrong
-        Clauses on why the device is not fit to be read on.
-    """
-
-    values: dict[str, Any] = field(default_factory=dict)
-    wrong: list[str] = field(default_factory=list)
-
-    @property
-    def fit(self) -> bool:
-        """Tell if the device is fit to be read on."""
-        return not self.wrong
-
-    def to_json(self) -> dict[str, Any]:
-        """All of it, for JSON."""
-        return {"fit": self.fit, **self.values, "wrong": self.wrong}
 
 
 class Watch:
@@ -205,10 +172,8 @@ def finishes_parts(device: Device) -> list[str]:
     return faults
 
 
-def check(
-    device: Device, clock: Clock, say: Callable[[str], None], *, rate_s: float = _RATE_S
-) -> Checkup:
-    """Measure a device; say what was measured, one thing a line, and last the verdict.
+class Checkup:
+    """A measurement of a device, done by `run`.
 
     Parameters
     ----------
@@ -216,30 +181,54 @@ def check(
         The device, opened, and the clock that its time is measured by.
     say
         Takes a line.
-    rate_s
-        For how long the device is held to its rate, in seconds.
 
-    Raises
-    ------
-    DeviceError
-        If the device is gone, or gives no place within a minute.
+    Attributes
+    ----------
+    values : dict
+        What was measured, by name. ``ticks`` and ``late``: how many ticks were done, and how many
+        came too late. ``host_ms``, ``device_ms`` and ``line_ms``: greatest lateness of the
+        computer, of the device by its own clock, and of the line. ``held_ms``: usual time from
+        poses to the next poses that came; 0 if they came one by one. ``clock_s``: seconds that the
+        device's clock goes on in one of the computer's. ``x_mm``: leftmost and rightmost place of
+        the array's centre. ``round_trips_ms``: first percentile, median and 99th. ``trips_ms``: for
+        each time without frames, when the watchdog's trip was reported, or None. ``counts``: faults
+        by name, as the device and its line count them. What could not be measured is missing.
+    wrong : list of str
+        Clauses on why the device is not fit to be read on.
     """
-    return _Check(device, clock, say).run(rate_s)
-
-
-class _Check:
-    """One check; its measures give lines, each with what is wrong, or an empty text."""
 
     def __init__(self, device: Device, clock: Clock, say: Callable[[str], None]) -> None:
+        self.values: dict[str, Any] = {}
+        self.wrong: list[str] = []
         self._watch = Watch(device, clock)
         self._device: Any = self._watch  # to all others it is the device
         self._clock, self._say = clock, say
         self._rate_hz = device.display.rate_hz
         self._shown = False  # whether its place was chosen here, and says nothing
-        self._found = Checkup()
 
-    def run(self, rate_s: float) -> Checkup:
-        device, found = self._device, self._found
+    def to_json(self) -> dict[str, Any]:
+        """All of it, for JSON."""
+        return {"fit": not self.wrong, **self.values, "wrong": self.wrong}
+
+    def run(self, rate_s: float = _RATE_S) -> bool:
+        """Measure; say what was measured, one thing a line, and last the verdict.
+
+        Parameters
+        ----------
+        rate_s
+            For how long the device is held to its rate, in seconds.
+
+        Returns
+        -------
+        bool
+            Whether the device is fit to be read on.
+
+        Raises
+        ------
+        DeviceError
+            If the device is gone, or gives no place within a minute.
+        """
+        device = self._device
         self._wait_for_place()
         for row, column in np.ndindex(*device.display.shape):
             self._say(f"actuator: row {row + 1}, column {column + 1}")
@@ -251,14 +240,14 @@ class _Check:
         lines = self._timing(*ticks), self._taking(*ticks), self._counts(), self._watchdog()
         for said, wrong in chain(*lines):
             self._say(said)
-            found.wrong += [wrong] * bool(wrong)
+            self.wrong += [wrong] * bool(wrong)
             untold += [said.partition(":")[0]] * (": not tested" in said)
-        found.wrong += [*self._watch.faults(), *finishes_parts(device)]
+        self.wrong += [*self._watch.faults(), *finishes_parts(device)]
         verdict = f"fit to be read on{', but not tested: ' * bool(untold)}{', '.join(untold)}"
-        if found.wrong:
-            verdict = f"not fit to be read on: {'; '.join(found.wrong)}"
+        if self.wrong:
+            verdict = f"not fit to be read on: {'; '.join(self.wrong)}"
         self._say(f"verdict: {verdict}")
-        return found
+        return not self.wrong
 
     def _wait_for_place(self) -> None:
         """Wait for any place, or a wrong one: frames are not taken without one."""
@@ -318,7 +307,7 @@ class _Check:
     def _timing(self, late_ms: _Row, host_ms: _Row, came_ms: _Row, device_ms: _Row, x_mm: _Row,
                 _taken_ms: _Row) -> Lines:  # fmt: skip
         """Tell the computer, the line and the device apart."""
-        values, period_ms = self._found.values, 1e3 / self._rate_hz
+        values, period_ms = self.values, 1e3 / self._rate_hz
         late, count = int((late_ms > period_ms).sum()), late_ms.size
         values["ticks"], values["late"], values["host_ms"] = count, late, float(host_ms.max())
         yield f"rate: {self._rate_hz:g} Hz, {late} of {count} ticks late", ""
@@ -354,7 +343,7 @@ class _Check:
     def _taking(self, *ticks: _Row) -> Lines:
         """Tell where the carriage was, and when frames were acknowledged."""
         x_mm, taken_ms = (row[~np.isnan(row)] for row in ticks[4:])
-        info, values = self._device.display, self._found.values
+        info, values = self._device.display, self.values
         if self._shown or not x_mm.size:
             why = f"its reader must show it {shown_place(info)}" if self._shown else "none was told"
             yield f"place: not tested, since {why}", ""
@@ -385,7 +374,7 @@ class _Check:
 
     def _counts(self) -> Lines:
         """Tell what the device and its line counted, and what happened."""
-        counts = self._found.values["counts"] = dict(self._device.counts())
+        counts = self.values["counts"] = dict(self._device.counts())
         for name, count in counts.items():
             said = f"{name}: {count}"
             yield said, said if count > _MOST_FAULTS else ""
@@ -398,7 +387,7 @@ class _Check:
             yield "watchdog: not tested, since this device does not tell of one", ""
             return
         yield "watchdog: the device is sent nothing now, so that it trips", ""
-        trips = self._found.values["trips_ms"] = [self._trip_ms() for _ in range(_TRIPS)]
+        trips = self.values["trips_ms"] = [self._trip_ms() for _ in range(_TRIPS)]
         tripped = [ms for ms in trips if ms is not None]
         if not tripped:
             wrong = "its watchdog does not trip when no frame comes; do not read on it"

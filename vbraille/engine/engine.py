@@ -103,6 +103,11 @@ class Watcher:
             return None
         return float(self.newest["x_mm"])
 
+    def wait_for(self, line: int, end_mm: float | None, display: Display) -> None:
+        """Find the end of a line, whose last dot ends there; None for what ends nowhere."""
+        self._line = line
+        self._end = None if end_mm is None else EndOfLine(display.span_mm, end_mm)
+
     def watch(self, ticks: NDArray[np.void], display: Display) -> None:
         """Look at records, oldest first."""
         if not ticks.size:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 from vbraille.devices.events import Back, Stalled, from_json
 from vbraille.devices.registry import find_driver
 from vbraille.display import Display
-from vbraille.engine.engine import EndOfLine, Watcher
+from vbraille.engine.engine import Watcher
 from vbraille.engine.record import RingReader
 from vbraille.errors import DeviceError, InputError, VbrailleError
 from vbraille.files import open_memory, settings_path
@@ -230,8 +230,8 @@ class Host(Watcher):
             If the picture was compiled for another array.
         """
         picture.check_shape(self.display.shape)
-        self._shown, self._line = (picture, line, end_mm), line
-        self._end = None if end_mm is None else EndOfLine(self.display.span_mm, end_mm)
+        self._shown = picture, line, end_mm
+        self.wait_for(line, end_mm, self.display)
         memory = open_memory("vbraille-picture", max(picture.nbytes, 1))
         with os.fdopen(os.dup(memory), "wb") as out:
             out.write(picture.numbers.tobytes())

@@ -16,7 +16,7 @@ from vbraille.engine.constants import (
     NS_PER_S,
     STEP_NS,
 )
-from vbraille.engine.engine import EndOfLine, Watcher
+from vbraille.engine.engine import Watcher
 from vbraille.engine.record import FLAGS, FLOATS, INTS, LATE, LATENESS, WORK, Flag, Ring
 from vbraille.engine.ticks import POSE_THETA, POSE_X, POSE_Y, POSED
 from vbraille.errors import DeviceError, check_range
@@ -328,8 +328,7 @@ class LocalEngine(Loop, Watcher):
     def show(self, picture: Program, line: int, end_mm: float | None = None) -> None:
         """Put another picture under the hand; see `vbraille.engine.host.Host.show`."""
         super().show(picture, line)
-        self._line = line
-        self._end = None if end_mm is None else EndOfLine(self.display.span_mm, end_mm)
+        self.wait_for(line, end_mm, self.display)
 
     def give(self, order: HandOrder) -> None:
         """Tell a simulated hand what to do; nothing happens where a person moves the device."""

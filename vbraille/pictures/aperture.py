@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from vbraille.scene.bounds import Box
+    from vbraille.scene.geometry import Box
     from vbraille.scene.scene import Canvas
 
 # Zooms that a person goes through, from the farthest to the nearest.

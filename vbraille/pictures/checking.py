@@ -22,21 +22,22 @@ from vbraille.pictures.keys import crowded
 from vbraille.render.braille.models import STRESS2_8X8
 from vbraille.render.compiling import SceneMap
 from vbraille.scene.bitmap import WHOLE
-from vbraille.scene.bounds import Box, around, bounds, drawn_radius_mm
+from vbraille.scene.geometry import Box, around, bounds, drawn_radius_mm
 from vbraille.scene.patterns import (
     Circle,
     Dots,
     Group,
     Image,
     Label,
+    LinearGrating,
     Moving,
     PathShape,
     Polygon,
     Shape,
     Tile,
+    Uniform,
 )
 from vbraille.scene.signals import made_of
-from vbraille.scene.textures import LinearGrating, Uniform
 from vbraille.scene.traversal import (
     children,
     drawn_vibrations,
@@ -58,9 +59,8 @@ if TYPE_CHECKING:
 
     from vbraille.pictures.loading import LoadedScene
     from vbraille.scene.measures import RidgeWave
-    from vbraille.scene.patterns import AnyPattern
+    from vbraille.scene.patterns import AnyPattern, Vibration
     from vbraille.scene.scene import Scene
-    from vbraille.scene.strokes import Vibration
 
     Boxes = Mapping[Image | Label, Box]
 

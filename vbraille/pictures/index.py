@@ -11,7 +11,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from vbraille.render.compiling import SceneMap
-from vbraille.scene.bounds import Box, bounds
+from vbraille.scene.geometry import Box, bounds
 from vbraille.scene.patterns import Circle, Group, Label, PathShape, Polygon, Shape
 
 if TYPE_CHECKING:

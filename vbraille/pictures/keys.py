@@ -14,7 +14,7 @@ from vbraille.errors import InputError
 from vbraille.labelling import write_label
 from vbraille.pictures.index import label_of
 from vbraille.pictures.loading import LoadedScene, with_assets
-from vbraille.scene.bounds import Box
+from vbraille.scene.geometry import Box
 from vbraille.scene.locations import Locations, OpenedScene
 from vbraille.scene.patterns import Circle, Fill, Label, PathShape, Polygon
 from vbraille.scene.scene import Canvas, Scene

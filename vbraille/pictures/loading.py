@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from vbraille.errors import InputError
 from vbraille.labelling import label_warnings, write_labels
 from vbraille.render.labels import Assets, corners_mm
-from vbraille.scene.bounds import Box, around
+from vbraille.scene.geometry import Box, around
 from vbraille.scene.images import load_bitmaps
 from vbraille.scene.patterns import Image, Label
 from vbraille.scene.reading import open_scene
@@ -81,7 +81,7 @@ class LoadedScene:
         return shown_at(self.opened, self.assets, self.notes, zoom)
 
     def boxes(self) -> Mapping[Image | Label, Box]:
-        """Boxes of its images and labels, which `vbraille.scene.bounds` cannot know."""
+        """Boxes of its images and labels, which `vbraille.scene.geometry` cannot know."""
         found: dict[Image | Label, Box] = {
             label: around(corners_mm(label, written))
             for label, written in self.assets.written.items()

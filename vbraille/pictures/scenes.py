@@ -17,9 +17,8 @@ from PIL.PngImagePlugin import PngInfo
 
 from vbraille.errors import InputError
 from vbraille.pictures.words import plain
-from vbraille.scene.patterns import Moving
+from vbraille.scene.patterns import Moving, SignalLevel
 from vbraille.scene.signals import Pulse, Switch, ordered
-from vbraille.scene.textures import SignalLevel
 from vbraille.scene.traversal import each, vibrations, waves_of
 from vbraille.wording import setting
 

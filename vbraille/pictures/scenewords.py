@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from vbraille.pictures.words import plain
-from vbraille.scene.pattern import Pattern
+from vbraille.scene.patterns import Pattern
 from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch
 from vbraille.scene.traversal import vibrations
 
@@ -102,7 +102,7 @@ def pattern_words(pattern: Pattern) -> str:
     """Tell in a line what a pattern is: its name, its kind, and what is not usual of it.
 
     >>> from vbraille.scene.patterns import Circle
-    >>> from vbraille.scene.strokes import Stroke
+    >>> from vbraille.scene.patterns import Stroke
     >>> pattern_words(Circle(center_mm=(5, 9), radius_mm=4, stroke=Stroke(), title="sun"))
     'sun, circle, stroke (width 4 mm), center 5, 9 mm, radius 4 mm'
     """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from contextlib import ExitStack
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -41,25 +42,19 @@ def open_recording(path: Path) -> Playback:
     InputError
         If it is something else, or has no whole frame.
     """
-    try:
-        file = h5py.File(path, "r")
-    except FileNotFoundError:
-        raise InputError(f"there is no file {path}; check the name") from None
-    except UNLIKE:
-        raise InputError(
-            f"{path} is no recording, or is damaged; give what vbraille render wrote, or a session"
-        ) from None
-    try:
-        found = Rendered(file, path.name)
-        found.locate(0.0)  # there is a whole frame, which later calls find at the worst
-    except UNLIKE:
-        file.close()
-        raise InputError(
-            f"{path} is HDF5 of something else; give what vbraille render wrote"
-        ) from None
-    except InputError:
-        file.close()
-        raise
+    with ExitStack() as opened:
+        try:
+            file = opened.enter_context(h5py.File(path, "r"))
+            found = Rendered(file, path.name)
+            found.locate(0.0)  # there is a whole frame, which later calls find at the worst
+        except FileNotFoundError:
+            raise InputError(f"there is no file {path}; check the name") from None
+        except UNLIKE:
+            raise InputError(
+                f"{path} is no recording, or is damaged; give what vbraille render wrote, or a "
+                f"session"
+            ) from None
+        opened.pop_all()
     return found
 
 
@@ -82,12 +77,12 @@ class Rendered(Playback):
         self._rate_hz = model.display.rate_hz
         self._display = model.display
         self._style = model.style if model.name and "scene" not in file else None
-        self._first_line = max(int(file.attrs.get("first_line", 1)), 0)
+        self._first_line = max(int(np.asarray(file.attrs["first_line"])), 0)
         self._lengths = found["page/length"][:].astype(np.int64)
-        self._title = str(file.attrs.get("source", name))
+        self._title = str(file.attrs["source"])
         self._facts = [
-            ("model", str(file.attrs.get("model", "not known"))),
-            ("recorded by", f"vbraille {file.attrs.get('vbraille_version', 'not known')}"),
+            ("model", str(file.attrs["model"]) or "not known"),
+            ("recorded by", f"vbraille {file.attrs['vbraille_version']}"),
             ("frames", f"{count}, {self._rate_hz:g} a second"),
         ]
         self.length_s = self._time_s(count - 1)
@@ -145,7 +140,7 @@ class Rendered(Playback):
             rows_shown=[] if style is None else rows_shown(style, self._display),
             lines=self._lines(scene - 1) if lined else [],
             place=self._name(scene - 1) if lined else "",
-            mapping="" if self._picture else f"mapping: {self._file.attrs.get('mapping', '')}",
+            mapping="" if self._picture else f"mapping: {self._file.attrs['mapping']}",
             device="recording",
             facts=self._facts,
             scene=self._picture,

@@ -23,32 +23,41 @@ from vbraille.render.labels import Assets
 from vbraille.render.program import Program, head
 from vbraille.render.work import MOST_SIGNALS, ProgramKind
 from vbraille.scene.bitmap import WHOLE, opaque
-from vbraille.scene.bounds import Box, around, bounds, drawn_radius_mm, is_everywhere, reach_mm
-from vbraille.scene.dotting import PlacedDot, rows_of
-from vbraille.scene.joints import Cycle, axial_cycle, cue_cycle, stroke_cycles
+from vbraille.scene.geometry import (
+    Box,
+    Cycle,
+    PlacedDot,
+    around,
+    axial_cycle,
+    bounds,
+    cue_cycle,
+    drawn_radius_mm,
+    is_everywhere,
+    reach_mm,
+    rows_of,
+    stroke_cycles,
+)
 from vbraille.scene.patterns import (
+    AxialGrating,
     Circle,
     Dots,
+    Gradual,
     Group,
     Image,
     Label,
+    LinearGrating,
     Moving,
     PathShape,
     Polygon,
-    StraightLine,
-    Tile,
-)
-from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch, ordered
-from vbraille.scene.textures import (
-    AxialGrating,
-    Gradual,
-    LinearGrating,
     RadialGrating,
     SignalLevel,
+    StraightLine,
+    Tile,
     TurnPeak,
     Uniform,
     UniformVibration,
 )
+from vbraille.scene.signals import Direction, Inverse, Product, Pulse, Speed, Switch, ordered
 from vbraille.scene.traversal import drawn_vibrations, driving, each, waves_of
 
 if TYPE_CHECKING:
@@ -59,10 +68,9 @@ if TYPE_CHECKING:
     from vbraille.display import Display
     from vbraille.scene.bitmap import Bitmap
     from vbraille.scene.measures import Point
-    from vbraille.scene.patterns import AnyPattern
+    from vbraille.scene.patterns import Across, AnyPattern, DotStyle, MovingCue, Stroke, Vibration
     from vbraille.scene.scene import Scene
     from vbraille.scene.signals import OrderedSignal
-    from vbraille.scene.strokes import Across, DotStyle, MovingCue, Stroke, Vibration
 
 _FAR = 1e30  # stands for infinity
 _LEAST_FADE_MM = 1e-9  # of a fill

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from vbraille.errors import InputError
 from vbraille.render.labels import Assets, Written
-from vbraille.scene.bounds import Box, bounds
+from vbraille.scene.geometry import Box, bounds
 from vbraille.scene.patterns import Fill, Group, Image, Label, Polygon, Uniform
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import renamed

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from vbraille.render.braille.style import cells_size_mm
 from vbraille.render.work import FADE_MM
 from vbraille.scene.bitmap import bitmap_box
-from vbraille.scene.bounds import around
+from vbraille.scene.geometry import around
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.scene.bitmap import Bitmap
-    from vbraille.scene.bounds import Box
+    from vbraille.scene.geometry import Box
     from vbraille.scene.measures import Point
     from vbraille.scene.patterns import Image, Label
 

@@ -9,13 +9,13 @@ import itertools
 import math
 from typing import TYPE_CHECKING
 
-from vbraille.scene.bounds import drawn_radius_mm
-from vbraille.scene.dotting import rows_of
-from vbraille.scene.joints import (
+from vbraille.scene.geometry import (
+    drawn_radius_mm,
     joints,
     marker_half_angle_rad,
     places_along_mm,
     rounding_radius_mm,
+    rows_of,
     stroke_cycles,
 )
 from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
@@ -23,8 +23,7 @@ from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from vbraille.scene.dotting import DotRow
-    from vbraille.scene.joints import Joint
+    from vbraille.scene.geometry import DotRow, Joint
     from vbraille.scene.measures import Point
 
 AnyShape = StraightLine | Circle | Polygon | PathShape

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.errors import check_range
-from vbraille.scene.bounds import Box
+from vbraille.scene.geometry import Box
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

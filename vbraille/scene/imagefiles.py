@@ -47,7 +47,7 @@ class ImageFile:
     Attributes
     ----------
     columns, rows : int
-        Its pixels; of an SVG file very many.
+        Pixels along it; of an SVG file very many.
     size_mm : tuple of float or None
         Width and height that an SVG file gives itself.
 

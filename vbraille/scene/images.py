@@ -17,8 +17,7 @@ import numpy as np
 from vbraille.errors import InputError, needing_extras
 from vbraille.scene.bitmap import WHOLE, Bitmap, pixel_size_mm
 from vbraille.scene.imagefiles import ImageFile
-from vbraille.scene.pattern import Pattern
-from vbraille.scene.patterns import Dots, Group, Image
+from vbraille.scene.patterns import Dots, Group, Image, Pattern
 from vbraille.scene.traversal import each
 
 if TYPE_CHECKING:

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn
 from msgspec.structs import replace
 
 from vbraille.errors import InputError
-from vbraille.scene.dotting import most_dots_of
+from vbraille.scene.geometry import most_dots_of
 from vbraille.scene.locations import Locations
-from vbraille.scene.pattern import Pattern
-from vbraille.scene.patterns import Group, ImageDots, Use
+from vbraille.scene.patterns import Group, ImageDots, Pattern, Use
 from vbraille.scene.signals import MOST_SIGNALS, Switch, made_of, ordered
 from vbraille.scene.stock import STOCK, stock_textures
 from vbraille.scene.traversal import (

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from vbraille.scene.measures import MOST_MM, Measured, limits
-from vbraille.scene.pattern import Pattern
-from vbraille.scene.patterns import AnyPattern, Operation
+from vbraille.scene.patterns import AnyPattern, Operation, Pattern
 from vbraille.scene.signals import AnySignal
 from vbraille.toml import Table
 

@@ -7,10 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
-from vbraille.scene.pattern import Pattern
-from vbraille.scene.patterns import Fill, Tile
-from vbraille.scene.strokes import Vibration
-from vbraille.scene.textures import SignalLevel, UniformVibration
+from vbraille.scene.patterns import Fill, Pattern, SignalLevel, Tile, UniformVibration, Vibration
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -76,7 +73,7 @@ def placed_children(pattern: AnyPattern) -> list[tuple[Steps, AnyPattern]]:
     """Patterns that stand directly in a pattern, with the keys that lead from it to each.
 
     >>> from vbraille.scene.patterns import Tile
-    >>> from vbraille.scene.textures import Uniform
+    >>> from vbraille.scene.patterns import Uniform
     >>> [steps for steps, _ in placed_children(Tile(width_mm=5, height_mm=5, part=Uniform()))]
     [('part',)]
     """
@@ -217,7 +214,7 @@ def moved(pattern: AnyPattern, move_mm: Point) -> AnyPattern:
         If something would be farther than 10 m from the origin.
 
     >>> from vbraille.scene.patterns import Circle
-    >>> from vbraille.scene.strokes import Stroke
+    >>> from vbraille.scene.patterns import Stroke
     >>> moved(Circle(center_mm=(10, 20), radius_mm=5, stroke=Stroke()), (1, -2)).center_mm
     (11, 18)
     """

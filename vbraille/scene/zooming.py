@@ -8,17 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import replace
 
-from vbraille.scene.patterns import Circle, Group, Image, Label, Shape, Tile
+from vbraille.scene.patterns import Circle, Gradual, Group, Image, Label, Peak, Shape, Tile, Uniform
 from vbraille.scene.scene import Canvas
-from vbraille.scene.textures import Gradual, Peak, Uniform
 from vbraille.scene.traversal import children, each, placed, with_children
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from vbraille.scene.bitmap import Bitmap
-    from vbraille.scene.pattern import Pattern
-    from vbraille.scene.patterns import AnyPattern
+    from vbraille.scene.patterns import AnyPattern, Pattern
     from vbraille.scene.scene import Scene
 
 # Operations by which a part that is not there leaves the others as they are.

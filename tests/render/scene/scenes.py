@@ -13,41 +13,37 @@ from msgspec.structs import replace
 from tests.render.scene.showing import SIDE_MM
 from tests.render.scene.twinsignals import SIGNALS
 from tests.tiers import by_tier
-from vbraille.scene.intersections import meeting_edges
 from vbraille.scene.patterns import (
+    Across,
+    Along,
+    AxialGrating,
     Circle,
     Dots,
+    DotStyle,
+    Dotting,
     Fill,
+    Gradual,
     Group,
     Image,
     Label,
-    PathShape,
-    Polygon,
-    StraightLine,
-    Tile,
-)
-from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import (
-    Across,
-    Along,
-    DotStyle,
-    Dotting,
-    MovingCue,
-    Stroke,
-    VertexMarkers,
-    Vibration,
-)
-from vbraille.scene.textures import (
-    AxialGrating,
-    Gradual,
     LinearGrating,
+    MovingCue,
+    PathShape,
     Peak,
+    Polygon,
     RadialGrating,
     SignalLevel,
+    StraightLine,
+    Stroke,
+    Tile,
     TurnPeak,
     Uniform,
     UniformVibration,
+    VertexMarkers,
+    Vibration,
+    meeting_edges,
 )
+from vbraille.scene.scene import Canvas, Scene
 
 
 def examples(count):

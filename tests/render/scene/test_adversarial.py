@@ -8,31 +8,27 @@ import pytest
 from tests.render.scene.showing import STRESS2_8X8_ARRAY, At, poses, scene_of, shown
 from tests.tiers import by_tier
 from vbraille.scene.patterns import (
+    Across,
+    Along,
+    AxialGrating,
     Circle,
     Dots,
+    DotStyle,
+    Dotting,
     Fill,
     Image,
     Label,
+    LinearGrating,
     PathShape,
     Polygon,
-    Tile,
-)
-from vbraille.scene.strokes import (
-    Across,
-    Along,
-    DotStyle,
-    Dotting,
-    Stroke,
-    VertexMarkers,
-    Vibration,
-)
-from vbraille.scene.textures import (
-    AxialGrating,
-    LinearGrating,
     RadialGrating,
+    Stroke,
+    Tile,
     TurnPeak,
     Uniform,
     UniformVibration,
+    VertexMarkers,
+    Vibration,
 )
 
 HOURS_S = 36_000.0

@@ -6,10 +6,15 @@ import numpy as np
 
 from vbraille.display import Display
 from vbraille.render.compiling import SceneMap, compile_scene
-from vbraille.scene.patterns import Circle, StraightLine
+from vbraille.scene.patterns import (
+    Circle,
+    LinearGrating,
+    StraightLine,
+    Stroke,
+    UniformVibration,
+    Vibration,
+)
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Stroke, Vibration
-from vbraille.scene.textures import LinearGrating, UniformVibration
 
 CANVAS = Canvas(width_mm=60.0, height_mm=40.0)
 SCENE = Scene(

@@ -11,10 +11,18 @@ import pytest
 from vbraille.display import Display
 from vbraille.render import kernels, work
 from vbraille.render.compiling import compile_scene
-from vbraille.scene.patterns import Circle, Group, StraightLine, Tile
+from vbraille.scene.patterns import (
+    Circle,
+    Group,
+    LinearGrating,
+    StraightLine,
+    Stroke,
+    Tile,
+    Uniform,
+    UniformVibration,
+    Vibration,
+)
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Stroke, Vibration
-from vbraille.scene.textures import LinearGrating, Uniform, UniformVibration
 
 if TYPE_CHECKING:
     from vbraille.render.program import Program

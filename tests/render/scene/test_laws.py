@@ -23,9 +23,19 @@ from tests.render.scene.showing import (
     scene_of,
     shown,
 )
-from vbraille.scene.joints import axial_cycle
-from vbraille.scene.patterns import Circle, Fill, Group, PathShape, Polygon, StraightLine
-from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating, Uniform
+from vbraille.scene.geometry import axial_cycle
+from vbraille.scene.patterns import (
+    AxialGrating,
+    Circle,
+    Fill,
+    Group,
+    LinearGrating,
+    PathShape,
+    Polygon,
+    RadialGrating,
+    StraightLine,
+    Uniform,
+)
 from vbraille.scene.traversal import moved, with_children
 
 EXACT = 1e-6  # frames are of float32

@@ -8,11 +8,20 @@ from msgspec.structs import replace
 
 from tests.render.scene.showing import STRESS2_8X8_ARRAY, scene_of
 from vbraille.render.compiling import SceneMap, compile_scene
-from vbraille.scene.bounds import bounds
-from vbraille.scene.dotting import rows_of
-from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
+from vbraille.scene.geometry import bounds, rows_of
+from vbraille.scene.patterns import (
+    Along,
+    Circle,
+    DotStyle,
+    Dotting,
+    MovingCue,
+    PathShape,
+    Polygon,
+    StraightLine,
+    Stroke,
+    Vibration,
+)
 from vbraille.scene.scene import Canvas
-from vbraille.scene.strokes import Along, DotStyle, Dotting, MovingCue, Stroke, Vibration
 
 CANVAS = Canvas(width_mm=60, height_mm=60)
 DOT = DotStyle(radius_mm=1.0, edge_mm=0.5)

@@ -12,9 +12,17 @@ from vbraille.render.compiling import compile_scene
 from vbraille.render.figures import FIGURE, PAGE, FigureAt, page_with_figures
 from vbraille.render.labels import Assets
 from vbraille.scene.bitmap import Bitmap
-from vbraille.scene.patterns import Circle, Group, Image, Label, LinearGrating, Tile, Uniform
+from vbraille.scene.patterns import (
+    Circle,
+    Group,
+    Image,
+    Label,
+    LinearGrating,
+    Stroke,
+    Tile,
+    Uniform,
+)
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.strokes import Stroke
 
 STYLE = STRESS2_8X8.style
 

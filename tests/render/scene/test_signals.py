@@ -15,7 +15,19 @@ from tests.render.scene.twinsignals import Signals
 from vbraille.render import work
 from vbraille.render.compiling import SceneMap, compile_scene
 from vbraille.render.signalkernels import begin, compute
-from vbraille.scene.patterns import Circle, Fill, Group, Moving, StraightLine
+from vbraille.scene.patterns import (
+    Along,
+    AxialGrating,
+    Circle,
+    Fill,
+    Group,
+    LinearGrating,
+    Moving,
+    SignalLevel,
+    StraightLine,
+    Stroke,
+    Uniform,
+)
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import (
     Direction,
@@ -27,8 +39,6 @@ from vbraille.scene.signals import (
     ordered,
     packed,
 )
-from vbraille.scene.strokes import Along, Stroke
-from vbraille.scene.textures import AxialGrating, LinearGrating, SignalLevel, Uniform
 
 CANVAS = Canvas(width_mm=60, height_mm=60)
 speeds = {"below_mm_s": numbers(0, 20), "transition_mm_s": numbers(0.1, 20)}

@@ -5,16 +5,20 @@ import math
 import numpy as np
 
 from tests.render.scene.showing import felt
-from vbraille.scene.patterns import Circle, Dots, Fill, Polygon, StraightLine
-from vbraille.scene.strokes import (
+from vbraille.scene.patterns import (
     Along,
+    Circle,
+    Dots,
     DotStyle,
     Dotting,
+    Fill,
+    Polygon,
+    StraightLine,
     Stroke,
+    Uniform,
     VertexMarkers,
     Vibration,
 )
-from vbraille.scene.textures import Uniform
 
 R = np.linspace(-6, 6, 12_001)
 SQUARE = ((0, 0), (30, 0), (30, 30), (0, 30))

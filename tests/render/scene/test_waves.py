@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from tests.render.scene.showing import felt
-from vbraille.scene.patterns import Tile
-from vbraille.scene.textures import (
+from vbraille.scene.patterns import (
     AxialGrating,
     Gradual,
     LinearGrating,
     RadialGrating,
+    Tile,
 )
 
 X = np.linspace(-60, 180, 24_001)  # steps of 0.01 mm

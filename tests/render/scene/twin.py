@@ -37,25 +37,22 @@ from tests.render.scene.twinwaves import (
     vibration,
 )
 from vbraille.scene.bitmap import opaque
-from vbraille.scene.bounds import drawn_radius_mm, is_everywhere
-from vbraille.scene.dotting import PlacedDot
+from vbraille.scene.geometry import PlacedDot, drawn_radius_mm, is_everywhere
 from vbraille.scene.patterns import (
+    AxialGrating,
     Circle,
     Dots,
     Group,
     Image,
     Label,
+    LinearGrating,
     Moving,
     PathShape,
     Polygon,
-    StraightLine,
-    Tile,
-)
-from vbraille.scene.textures import (
-    AxialGrating,
-    LinearGrating,
     RadialGrating,
     SignalLevel,
+    StraightLine,
+    Tile,
     Uniform,
     UniformVibration,
 )

@@ -19,14 +19,16 @@ from tests.render.scene.twinwaves import (
     share_left,
     vibrated,
 )
-from vbraille.scene.dotting import PlacedDot, dots_of, rows_of
-from vbraille.scene.joints import (
+from vbraille.scene.geometry import (
     Joint,
+    PlacedDot,
     cue_cycle,
+    dots_of,
     joints,
     marker_half_angle_rad,
     places_along_mm,
     rounding_radius_mm,
+    rows_of,
     stroke_cycles,
 )
 from vbraille.scene.patterns import Circle, PathShape, Polygon, StraightLine
@@ -36,10 +38,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.scene.dotting import DotRow
-    from vbraille.scene.joints import Cycle
+    from vbraille.scene.geometry import Cycle, DotRow
     from vbraille.scene.measures import Point
-    from vbraille.scene.strokes import (
+    from vbraille.scene.patterns import (
         Across,
         Along,
         DotStyle,

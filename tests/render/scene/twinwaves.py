@@ -13,15 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vbraille.scene.bitmap import WHOLE
-from vbraille.scene.joints import Cycle, axial_cycle
-from vbraille.scene.textures import Gradual, Peak
+from vbraille.scene.geometry import Cycle, axial_cycle
+from vbraille.scene.patterns import Gradual, Peak
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from vbraille.scene.bitmap import Bitmap
-    from vbraille.scene.strokes import Vibration
-    from vbraille.scene.textures import AxialGrating, LinearGrating, RadialGrating
+    from vbraille.scene.patterns import AxialGrating, LinearGrating, RadialGrating, Vibration
 
 Values = NDArray[np.float64]
 

@@ -11,8 +11,7 @@ from tests.scene.openlatero.files import scene, texture
 from vbraille.render.labels import Assets
 from vbraille.scene.images import load_bitmaps
 from vbraille.scene.openlatero import read_gen
-from vbraille.scene.patterns import Image
-from vbraille.scene.textures import UniformVibration
+from vbraille.scene.patterns import Image, UniformVibration
 
 WIDE, HIGH = 289.9, 230.1875
 

@@ -14,9 +14,15 @@ from tests.scene.openlatero.files import (
 )
 from vbraille.errors import InputError
 from vbraille.scene.openlatero import read_gen
-from vbraille.scene.patterns import Circle, PathShape, Tile
-from vbraille.scene.strokes import Stroke, Vibration
-from vbraille.scene.textures import LinearGrating, Uniform
+from vbraille.scene.patterns import (
+    Circle,
+    LinearGrating,
+    PathShape,
+    Stroke,
+    Tile,
+    Uniform,
+    Vibration,
+)
 
 
 def said(found):

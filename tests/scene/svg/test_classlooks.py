@@ -3,9 +3,15 @@
 import pytest
 
 from tests.scene.svg.plans import NS, element_of
-from vbraille.scene.patterns import Fill, LinearGrating, StraightLine, UniformVibration
+from vbraille.scene.patterns import (
+    Dotting,
+    Fill,
+    LinearGrating,
+    StraightLine,
+    Stroke,
+    UniformVibration,
+)
 from vbraille.scene.reading import open_scene
-from vbraille.scene.strokes import Dotting, Stroke
 from vbraille.scene.svg.looks import ClassLook
 
 WATER = ClassLook(fill=Fill(texture=UniformVibration(), gap_mm=1), stroke=Stroke(width_mm=5))

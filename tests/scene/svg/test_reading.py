@@ -10,14 +10,24 @@ from hypothesis import strategies as st
 from tests.scene.svg.plans import element_of, warned
 from tests.tiers import examples
 from vbraille.errors import InputError
-from vbraille.scene.patterns import Circle, Fill, Group, Label, Polygon, StraightLine, Uniform, Use
+from vbraille.scene.patterns import (
+    Along,
+    Circle,
+    Fill,
+    Group,
+    Label,
+    Polygon,
+    StraightLine,
+    Stroke,
+    Uniform,
+    Use,
+)
 from vbraille.scene.patterns import PathShape as Lines
 from vbraille.scene.reading import SceneFile, open_scene
 from vbraille.scene.stock import stock_textures
-from vbraille.scene.strokes import Along, Stroke
+from vbraille.scene.svg.document import color_of
 from vbraille.scene.svg.drawing import read_svg
 from vbraille.scene.svg.looks import BY_HUE, hue_of
-from vbraille.scene.svg.values import color_of
 from vbraille.scene.traversal import each
 from vbraille.toml import TomlFile
 

@@ -80,7 +80,7 @@ def check(spec: str, model: str | None, json: bool) -> int:
 
     Each actuator swings; the rate, the clock, the round trip and the watchdog are measured.
     """
-    from vbraille.engine.checkup import check as measure
+    from vbraille.engine.checkup import Checkup
     from vbraille.engine.clock import RealClock
     from vbraille.engine.realtime import go_real_time
     from vbraille.signals import EAR
@@ -94,12 +94,13 @@ def check(spec: str, model: str | None, json: bool) -> int:
         try:
             if refused := go_real_time():
                 tell(refused.say())
-            found = measure(device, RealClock(), tell)
+            found = Checkup(device, RealClock(), tell)
+            fit = found.run()
         finally:
             EAR.close()  # so that the array goes to rest
     if json:
         print_json(found.to_json())
-    return 0 if found.fit else 1
+    return 0 if fit else 1
 
 
 @command.command(epilog="Example: vbraille device calibrate serial:/dev/ttyACM0")

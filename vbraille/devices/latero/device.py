@@ -28,13 +28,13 @@ from vbraille.carriers.carrier import LATERO, LATERO_ARRAY
 from vbraille.devices.base import Device, Particulars
 from vbraille.devices.events import (
     Back,
-    Button,
     Notice,
     Placed,
     Placing,
     Silent,
     Unplugged,
     WatchdogTripped,
+    moved,
 )
 from vbraille.devices.latero import watchdog as blade_watchdog
 from vbraille.devices.latero.watchdog import ACTING, AFTER, BEAT, POWER, TRIPS
@@ -661,9 +661,7 @@ class LateroDevice(Device):
 
     def _press(self, held: int, now_ns: int) -> None:
         """Tell of buttons that were pressed or let go."""
-        for bit in range(len(BUTTONS)):
-            if (held ^ self._pressed) >> bit & 1:
-                self._events.append(Button(bit + 1, bool(held >> bit & 1), at_ns=now_ns))
+        self._events += moved(self._pressed, held, len(BUTTONS), now_ns)
         self._held = self._pressed = held
 
     def _locate(self, answer: Answer, sent_ns: int) -> None:

@@ -14,46 +14,41 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 from msgspec.structs import replace
 
 from vbraille.errors import InputError, needing_extras
-from vbraille.scene.dotting import rows_of
+from vbraille.scene.geometry import joints, rounding_radius_mm, rows_of
 from vbraille.scene.imagefiles import ImageFile
-from vbraille.scene.intersections import meeting_edges
-from vbraille.scene.joints import joints, rounding_radius_mm
 from vbraille.scene.measures import LEAST_MM, MOST_MM
 from vbraille.scene.openlatero.elements import Element
 from vbraille.scene.patterns import (
-    Circle,
-    Dots,
-    Fill,
-    Group,
-    Image,
-    Moving,
-    PathShape,
-    Polygon,
-    StraightLine,
-    Tile,
-)
-from vbraille.scene.signals import Direction, Speed, Switch
-from vbraille.scene.strokes import (
     Across,
     Along,
+    AxialGrating,
+    Circle,
+    Dots,
     DotStyle,
     Dotting,
-    MovingCue,
-    Stroke,
-    VertexMarkers,
-    Vibration,
-)
-from vbraille.scene.textures import (
-    AxialGrating,
+    Fill,
     Gradual,
+    Group,
+    Image,
     LinearGrating,
+    Moving,
+    MovingCue,
+    PathShape,
     Peak,
+    Polygon,
     RadialGrating,
     SignalLevel,
+    StraightLine,
+    Stroke,
+    Tile,
     TurnPeak,
     Uniform,
     UniformVibration,
+    VertexMarkers,
+    Vibration,
+    meeting_edges,
 )
+from vbraille.scene.signals import Direction, Speed, Switch
 from vbraille.sounds import read_sound
 from vbraille.wording import nearest
 

@@ -28,39 +28,38 @@ from vbraille.scene.patterns import (
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.svg import outlines
 from vbraille.scene.svg.document import (
+    BLACK,
+    INITIAL,
     INKSCAPE,
     LONGEST_TEXT,
     MOST_ELEMENTS,
-    description_of,
-    id_of,
-    link_of,
-    name_of,
-    plain,
-    read_tree,
-    short,
-    target_of,
-    title_of,
-)
-from vbraille.scene.svg.looks import LEAST_SHARE, ClassLook, dashes_of, fill_of, stroke_of
-from vbraille.scene.svg.outlines import MOST_POINTS, SHAPES, TOO_FAR
-from vbraille.scene.svg.styles import INITIAL, StyleSheets
-from vbraille.scene.svg.values import (
-    BLACK,
     PX_MM,
     AffineMap,
     Color,
+    StyleSheets,
     Units,
     about,
     affine,
     angle_of,
     color_of,
+    description_of,
     fit,
+    id_of,
+    link_of,
+    name_of,
     origin_of,
+    plain,
+    read_tree,
     share_of,
+    short,
+    target_of,
+    title_of,
     transform_of,
     turned,
     view_box_of,
 )
+from vbraille.scene.svg.looks import LEAST_SHARE, ClassLook, dashes_of, fill_of, stroke_of
+from vbraille.scene.svg.outlines import MOST_POINTS, SHAPES, TOO_FAR
 from vbraille.scene.traversal import lines_of
 
 if TYPE_CHECKING:
@@ -68,10 +67,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.scene.patterns import AnyPattern
-    from vbraille.scene.svg.document import Element
+    from vbraille.scene.svg.document import Box, Element, Point, Style
     from vbraille.scene.svg.outlines import Contour, Ring
-    from vbraille.scene.svg.styles import Style
-    from vbraille.scene.svg.values import Box, Point
 
 # Elements that only stand in a drawing to be used, or say something about it.
 _SILENT = frozenset(

@@ -6,14 +6,13 @@ import colorsys
 import re
 from typing import TYPE_CHECKING
 
-from vbraille.scene.patterns import Fill, Uniform, Use
-from vbraille.scene.strokes import Along, Dotting, Stroke
+from vbraille.scene.patterns import Along, Dotting, Fill, Stroke, Uniform, Use
 from vbraille.toml import Table
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from vbraille.scene.svg.values import Color, Units
+    from vbraille.scene.svg.document import Color, Units
 
     Note = Callable[[str], None]
 

@@ -15,15 +15,13 @@ import pyclipper as clipper_library
 from svg.path import Arc, Close, CubicBezier, Move, Path, QuadraticBezier, parse_path
 
 from vbraille.scene.measures import MOST_MM
-from vbraille.scene.svg.document import name_of
-from vbraille.scene.svg.values import AffineMap, numbers_of
+from vbraille.scene.svg.document import AffineMap, name_of, numbers_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from vbraille.scene.measures import Point
-    from vbraille.scene.svg.document import Element
-    from vbraille.scene.svg.values import Units
+    from vbraille.scene.svg.document import Element, Units
 
 pyclipper: Any = clipper_library  # its types are not declared
 SHAPES = frozenset(("path", "rect", "circle", "ellipse", "line", "polyline", "polygon"))

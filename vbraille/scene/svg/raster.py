@@ -12,9 +12,8 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError, VbrailleError, lacking
-from vbraille.scene.svg.document import link_of, name_of, read_tree
+from vbraille.scene.svg.document import PX_MM, link_of, name_of, read_tree, view_box_of
 from vbraille.scene.svg.drawing import SvgDrawing
-from vbraille.scene.svg.values import PX_MM, view_box_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -48,9 +47,9 @@ class RasterDrawing:
     Attributes
     ----------
     size_mm : tuple of float
-        Its width and height.
+        Width and height, which an SVG file has itself.
     columns, rows : int
-        Its width and height in fine steps.
+        Width and height in fine steps.
 
     Raises
     ------

@@ -276,7 +276,7 @@ def _chooses(protocol: Protocol) -> Faults:
             yield "design.values", not fits, "must be the nearest and furthest on one side"
             unfit = right not in ("more", "less")
             yield "question.right", unfit, "must be 'more' or 'less' for [procedure]"
-    least, most = table.bounds(design)
+    least, *_, most = table.levels(design)
     for start in getattr(table, "start", ()):
         yield "procedure.start", not least <= start <= most, f"is not from {least:g} to {most:g}"
     if isinstance(table, QuestPlus):
@@ -314,7 +314,8 @@ def _check_shown(protocol: Protocol, condition: Condition) -> None:
         raise WrongValue(key, "sets what [design] or [procedure] varies; leave it out")
     looks, table = [look], protocol.procedure
     if table is not None and table.parameter is not None:  # strings are checked at both ends
-        looks += [look.changed(table.parameter, end) for end in table.bounds(protocol.design)]
+        ends = table.levels(protocol.design)
+        looks += [look.changed(table.parameter, end) for end in ends]
     setting = Setting(protocol.masks, protocol.room, Random(0))
     for where, items in (("design", protocol.items_shown), ("practice", protocol.practised)):
         for item, shown in itertools.product(items, looks):

@@ -6,17 +6,24 @@ resumed goes on as it would have.
 
 A *level* is a value of the procedure's parameter for strings; the difference from the standard
 where a design has one; or the two values, the lower first, of which one is preferred.
+
+**Staircases.** One up and two down converges where 70.7 % are right, one up and three down where
+79.4 % are (Levitt 1971). With one up and one down, steps of two sizes converge where a share p is
+right, if the easier step is p / (1 - p) times the harder one (Kaernbach 1991).
 """
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass, field
 from functools import lru_cache
+from hashlib import sha256
+from statistics import fmean
 from typing import Annotated, Literal, NamedTuple
 
 from msgspec import Meta
 
 from vbraille.adaptive.observer import Estimate, Grid, Quest, nearer, psychometric, steps
-from vbraille.adaptive.staircase import Rule, Staircases
 from vbraille.sessions.planning.design import AnyDesign, Compared
 from vbraille.sessions.planning.questions import Question
 from vbraille.sessions.planning.trial import Trial
@@ -25,6 +32,7 @@ from vbraille.toml import Table, WrongValue
 
 THRESHOLD, CENTRE = "threshold", "centre"
 PLACES = 9
+NEVER = -1.0  # no deviation is as small
 
 Level = tuple[float, ...]
 Chances = Annotated[tuple[Share, ...], Meta(min_length=1)]
@@ -65,12 +73,12 @@ class Procedure(Table, frozen=True, kw_only=True, tag_field="kind"):
     trials: Count | None = None
     seconds: Seconds | None = None
 
-    def bounds(self, design: AnyDesign) -> tuple[float, float]:
-        """Return the lowest and the highest level, or value of which one is preferred."""
+    def levels(self, design: AnyDesign) -> tuple[float, ...]:
+        """Return the levels that are named, or values of which one is preferred, rising."""
         if not isinstance(design, Compared):
             return self.least or 0.0, self.most or 0.0
-        values = [abs(value - (design.reference or 0.0)) for value in design.values]
-        return round(min(values), PLACES), round(max(values), PLACES)
+        away = (abs(value - (design.reference or 0.0)) for value in design.values)
+        return tuple(sorted(round(level, PLACES) for level in away))
 
     def next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
         """Return the next level after the answers of a condition; None if enough was asked."""
@@ -115,25 +123,69 @@ class Staircase(Procedure, frozen=True, kw_only=True, tag="staircase"):
         if self.target is not None and (self.right, self.wrong) != (1, 1):
             raise WrongValue("target", "is of steps up and down; give right = 1 and wrong = 1")
 
-    def _staircases(self, design: AnyDesign, seed: str) -> Staircases:
-        least, most = self.bounds(design)
-        easier = 1.0 if self.target is None else self.target / (1 - self.target)
-        less = self.harder == "less" or isinstance(design, Compared)
-        moves = (self.steps, self.right, self.wrong, easier, less, self.reversals)
-        return Staircases([Rule(start, least, most, *moves) for start in self.start], seed)
+    def climbs(self, design: AnyDesign, history: list[Outcome], seed: str) -> list[Climb]:
+        """Return the staircases after some answers."""
+        climbs = [Climb(self, design, level) for level in self.start]
+        for number, ((level, *_), positive, _) in enumerate(history):
+            # An answer that was corrected late may leave one more than the staircases wanted.
+            (_drawn(climbs, number, seed) or climbs[0]).take(level, positive)
+        return climbs
 
     def _next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
-        level = self._staircases(design, seed).next(
-            [(level, positive) for (level, *_), positive, _ in history]
-        )
-        return None if level is None else (level,)
+        climb = _drawn(self.climbs(design, history, seed), len(history), seed)
+        return None if climb is None else (climb.level,)
 
     def found(self, design: AnyDesign, history: list[Outcome], seed: str) -> str:
-        """Say the mean of the reversals."""
-        found = self._staircases(design, seed).estimate(
-            [(level, positive) for (level, *_), positive, _ in history]
-        )
-        return "" if found is None else f"{found[0]:.3g}, the mean of {found[1]} reversals"
+        """Say the mean of the reversals with the last step.
+
+        An odd one is left out at the beginning of each staircase, so that turns at the top and at
+        the bottom count alike.
+        """
+        levels: list[float] = []
+        for climb in self.climbs(design, history, seed):
+            turned = climb.turned[len(self.steps) - 1 :]
+            levels += turned[len(turned) % 2 :]
+        return f"{fmean(levels):.3g}, the mean of {len(levels)} reversals" if levels else ""
+
+
+@dataclass
+class Climb:
+    """A staircase on its way: its next level, and the levels at which it has turned."""
+
+    rule: Staircase
+    design: AnyDesign
+    level: float
+    turned: list[float] = field(default_factory=list)
+    _went_harder: bool | None = None
+    _answers: list[bool] = field(default_factory=list)  # since the last step
+
+    def take(self, level: float, right: bool) -> None:
+        """Move by an answer to the level that was shown."""
+        rule, self.level = self.rule, level
+        self._answers.append(right)
+        running = rule.right if right else rule.wrong
+        if self._answers[-running:] != [right] * running:
+            return
+        self._answers.clear()
+        if self._went_harder not in (None, right):
+            self.turned.append(level)
+        self._went_harder = right
+        size = rule.steps[min(len(self.turned), len(rule.steps) - 1)]
+        if rule.target is not None and not right:
+            size *= rule.target / (1 - rule.target)
+        falls = right == (rule.harder == "less" or isinstance(self.design, Compared))
+        least, *_, most = rule.levels(self.design)
+        moved = round(level - size if falls else level + size, PLACES)
+        self.level = min(max(moved, least), most)
+
+
+def _drawn(climbs: list[Climb], number: int, seed: str) -> Climb | None:
+    """Return the staircase of a question, which cannot be foreseen; None if all are over."""
+    left = [each for each in climbs if len(each.turned) < (each.rule.reversals or math.inf)]
+    if not left:
+        return None
+    drawn = sha256(f"{seed} {number}".encode()).digest()
+    return left[int.from_bytes(drawn[:8], "big") % len(left)]
 
 
 class QuestPlus(Procedure, frozen=True, kw_only=True, tag="quest"):
@@ -170,25 +222,27 @@ class QuestPlus(Procedure, frozen=True, kw_only=True, tag="quest"):
     at_least: Count = 10
 
     def _next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
-        found, asked = self._estimate(design, history)
-        precise = (self.sd is not None and found.sd <= self.sd) or (
-            self.width is not None and found.high - found.low <= self.width
-        )
+        found = self._estimate(design, history)
+        width = found.high - found.low
+        precise = found.sd <= (self.sd or NEVER) or width <= (self.width or NEVER)
         if precise and len(history) >= self.at_least:
             return None
-        return quest_of(self, design).next(asked)
+        return quest_of(self, design).next(_asked(history))
 
-    def _estimate(self, design: AnyDesign, history: list[Outcome]) -> tuple[Estimate, list]:
-        """Estimate what is asked about, and return the answers as QUEST+ has them."""
-        quest, asked = quest_of(self, design), [(level, positive) for level, positive, _ in history]
-        return quest.estimate(next(iter(quest.grid.axes)), asked), asked
+    def _estimate(self, design: AnyDesign, history: list[Outcome]) -> Estimate:
+        quest = quest_of(self, design)
+        return quest.estimate(next(iter(quest.grid.axes)), _asked(history))
 
     def found(self, design: AnyDesign, history: list[Outcome], seed: str) -> str:
         """Say the estimate and its interval."""
         if not history:
             return ""
-        found, _ = self._estimate(design, history)
+        found = self._estimate(design, history)
         return f"{found.mean:.3g}, 95 % between {found.low:.3g} and {found.high:.3g}"
+
+
+def _asked(history: list[Outcome]) -> list[tuple[Level, bool]]:
+    return [(level, positive) for level, positive, _ in history]
 
 
 @lru_cache(maxsize=8)
@@ -200,34 +254,27 @@ def quest_of(table: QuestPlus, design: AnyDesign) -> Quest:
     WrongValue
         If the values do not make a grid.
     """
-    least, most = table.bounds(design)
-    compared = isinstance(design, Compared)
+    values = table.levels(design)
     try:
         if table.step:
-            values = steps(least, most, table.step)
-        elif compared:
-            away = (abs(value - (design.reference or 0.0)) for value in design.values)
-            values = tuple(sorted(round(level, PLACES) for level in away))
-        else:
+            values = steps(values[0], values[-1], table.step)
+        elif not isinstance(design, Compared):
             raise ValueError("is missing; give the step from value to value")
-        axes = {"spread": table.spread, "lapse": table.lapse}
-        if compared and design.reference is None:
-            furthest = (table.furthest or most) + 1e-9
+        if isinstance(design, Compared) and design.reference is None:
+            observer = nearer(log=table.scale == "log")
+            grid = Grid(observer, {CENTRE: values, "spread": table.spread, "lapse": table.lapse})
+            furthest = (table.furthest or values[-1]) + 1e-9
             pairs = [(a, b) for a in values for b in values if a < b <= a + furthest]
-            grid = Grid(nearer(log=table.scale == "log"), {CENTRE: values, **axes})
             return Quest(grid, pairs, CENTRE)
-        guess = table.guess or ((1 / alternatives(design),) if compared else (0.0,))
-        axes = {"spread": table.spread, "guess": guess, "lapse": table.lapse}
-        shape = psychometric(table.shape, falls=table.harder == "more" and not compared)
-        grid = Grid(shape, {THRESHOLD: values, **axes})
-        return Quest(grid, [(value,) for value in values], THRESHOLD)
+        chance, falls = 0.0, table.harder == "more"
+        if isinstance(design, Compared):
+            chance = 1 / (2 if design.form == "abx" else len(design.items({})[0].split()))
+            falls = False
+        guess, observer = table.guess or (chance,), psychometric(table.shape, falls=falls)
+        axes = {THRESHOLD: values, "spread": table.spread, "guess": guess, "lapse": table.lapse}
+        return Quest(Grid(observer, axes), [(value,) for value in values], THRESHOLD)
     except ValueError as error:
         raise WrongValue("procedure.step", str(error)) from None
-
-
-def alternatives(design: Compared) -> int:
-    """Return how many answers there are to a trial, of which one is right."""
-    return 2 if design.form == "abx" else len(design.items({})[0].split())
 
 
 def put(table: Procedure, design: AnyDesign, trial: Trial, level: Level) -> Trial:
@@ -235,14 +282,13 @@ def put(table: Procedure, design: AnyDesign, trial: Trial, level: Level) -> Tria
     if not isinstance(design, Compared):
         assert table.parameter is not None, "it is checked"
         return trial.at(table.parameter, level[0])
-    if design.reference is None:
-        low, high = level
-        values = (low, high) if trial.values[0] < trial.values[1] else (high, low)
-        return trial.with_values(design.parameter, values)
-    away = level[0] if design.values[0] > design.reference else -level[0]
-    other = round(design.reference + away, PLACES)
     standard = design.reference
-    values = tuple(standard if value == standard else other for value in trial.values)
+    if standard is None:
+        first, second = trial.values
+        return trial.with_values(design.parameter, sorted(level, reverse=first > second))
+    away = level[0] if design.values[0] > standard else -level[0]
+    other = round(standard + away, PLACES)
+    values = [standard if value == standard else other for value in trial.values]
     return trial.with_values(design.parameter, values)
 
 
@@ -256,13 +302,13 @@ def outcome_of(
     level
         Value of what the procedure varies, if a string was shown.
     """
-    positive = question.positive(trial, answer)
+    positive, values = question.positive(trial, answer), trial.values
     if not isinstance(design, Compared):
         return Outcome((level,), positive, t_s)
     if design.reference is None:
-        chosen = trial.values[int(answer) - 1]
-        return Outcome(tuple(sorted(trial.values)), chosen == min(trial.values), t_s)
-    apart = max(abs(value - design.reference) for value in trial.values)
+        preferred = values[int(answer) - 1]
+        return Outcome(tuple(sorted(values)), preferred == min(values), t_s)
+    apart = max(abs(value - design.reference) for value in values)
     return Outcome((round(apart, PLACES),), positive, t_s)
 
 
