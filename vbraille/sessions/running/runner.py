@@ -21,7 +21,7 @@ from vbraille.sessions.planning.questionnaire import Item
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Record
-from vbraille.sessions.running.answers import Answers, Asked, Line, NoMoreAnswers, Press
+from vbraille.sessions.running.answers import Answers, Asked, Line, NoMoreAnswers
 from vbraille.sessions.running.conditions import Conditions, open_sound
 from vbraille.sessions.running.markers import Markers
 from vbraille.sessions.running.pins import Pins
@@ -113,7 +113,6 @@ class Runner:
         self._pins: Pins | None = None  # the conventional display beside the device
         self._view: SessionView | None = None
         self._suspension = Suspension()
-        self._key = ""  # the key that ends reading, if one does
         self._deaths = 0
         self._break_wanted = self._late = False
         self._told: dict[str, Any] = {}  # what the event of a run says
@@ -142,7 +141,7 @@ class Runner:
 
     @property
     def _reading(self) -> bool:
-        """True if a stimulus is read, so that the participant's key may end it."""
+        """True if a stimulus is read, so that something may end it."""
         return self.is_shown and not (self.paused or self.device.ended or self.presenter.by_key)
 
     @property
@@ -219,7 +218,6 @@ class Runner:
     def _go_through(self) -> Over:
         """Go through all trials, and return why the run is over; the array rests then."""
         self._begin()
-        self._watch_key()
         with self._suspension:
             try:
                 while self._go_on():
@@ -240,7 +238,7 @@ class Runner:
         self._record.write_ticks()  # those of an engine that died: ticks of each run begin at 0
         self._began_s, self._before_s = self.device.now_s, self.progress.t_s
         self._free_s = -1e9
-        self._log("run", **self._told, **self.device.told, **why)
+        self._log("run", clock_s=self._began_s, **self._told, **self.device.told, **why)
 
     def _go_on(self) -> bool:
         """Do what comes next; return whether there may be something again."""
@@ -488,7 +486,6 @@ class Runner:
         self.asked = asked
         if self._suspension.asked:
             self._suspend()
-        self._answers.awaits_key = self._reading
         if self.is_shown and not self._answers.typed:
             self.presenter.press()  # answers that are not typed take no time to read paper
         wait_s = 0.0 if self._conditions.fast else POLL_S
@@ -500,11 +497,9 @@ class Runner:
         self._poll()
         self._watch_time()
         self._look()
-        if isinstance(found, Press):
-            self._end_reading(self._key)
-        elif found is not None:
+        if found is not None:
             return self._obey(found)
-        elif asked is not None and asked.what == "answer" and self.is_shown and not self.paused:
+        if asked is not None and asked.what == "answer" and self.is_shown and not self.paused:
             return self._controlled(asked.trial)
         return None
 
@@ -533,8 +528,8 @@ class Runner:
         elif self.is_shown and presenter.by_key and not presenter.read:
             if why := presenter.press():
                 self.say(f"too early: {why}")
-        elif self._reading and self._key == "key:enter":
-            self._end_reading(self._key)
+        elif self._reading and self.protocol.trial.end == "key:enter":
+            self._end_reading("key:enter")
         else:
             return line
         return None
@@ -625,7 +620,7 @@ class Runner:
                     self.say(f"late: {self.name}, after {pace.answer_s:g} s")
 
     def _end_reading(self, by: str, at_s: float | None = None) -> None:
-        """End reading of the stimulus that is shown, by the participant's key or by the time."""
+        """End reading of the stimulus that is shown, by Enter, a button or the time."""
         if not self._reading:
             return
         at_s = self.device.now_s if at_s is None else at_s
@@ -639,18 +634,6 @@ class Runner:
             if self.protocol.trial.exposure_s is not None:
                 self._expect("answer", at_s, self.protocol.trial.answer_s)
         self.say(f"ended: {which}, by {by.replace(':', ' ')}{typed}")
-
-    def _watch_key(self) -> None:
-        """Look out for the participant's key, or say that Enter is pressed instead."""
-        self._key, key = self.protocol.trial.end or "", self.protocol.trial.key
-        if not key or self._key == "key:enter" or not self._answers.typed:
-            return
-        name = self._key.removeprefix("key:")
-        if self._answers.watch(key):
-            self.say(f"key: {name} ends reading, with no Enter after it")
-        else:
-            self._key = "key:enter"
-            self.say(f"key: lines are typed whole here; Enter ends reading instead of {name}")
 
     def _suspend(self) -> None:
         """Pause, and stop the process; afterwards Enter ends the pause."""
