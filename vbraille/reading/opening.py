@@ -122,8 +122,6 @@ class OpenDevice(ReadingDevice):
         if self._closed:
             raise DeviceError("the device is closed; open it again")
         check_lines(first, last)
-        if not text.strip():
-            raise InputError("the text has nothing to read in it; give some")
         width = cells_per_line(self.style.geometry, self.display)
         source = text_source(text, keep_lines=keep_lines)
         book = Book(source, choose_table(language, grade, table))

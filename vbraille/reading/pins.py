@@ -13,8 +13,9 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
-from vbraille.layout import lay_out_text
+from vbraille.layout import Layout
 from vbraille.reading.outputs import Cue, Output, system_module
+from vbraille.translate import Book, text_source
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -119,7 +120,8 @@ class Pins(Output):
 
     def _parts(self, width: int) -> list[bytes]:
         """Dot masks of the sentences, cut into parts of the display's width."""
-        layouts = (lay_out_text(sentence, width, self._table) for sentence in self._sentences)
+        books = (Book(text_source(sentence), self._table) for sentence in self._sentences)
+        layouts = (Layout(book, width) for book in books)
         return [line.masks.tobytes() for layout in layouts for line in layout.lines()]
 
     def _pan(self, step: int, parts: int) -> bool:

@@ -13,6 +13,7 @@ import signal
 import subprocess
 import sys
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from threading import Lock
 from typing import Any, NamedTuple
@@ -131,3 +132,10 @@ class Louis:
 LOUIS = Louis()
 atexit.register(LOUIS.stop)
 os.register_at_fork(after_in_child=LOUIS.forget)
+
+
+@cache
+def cells_of(table: str, text: str) -> bytes:
+    """Dot masks of a short text by a table; none if it leaves some of it undefined."""
+    answer = LOUIS.translate(table, text)
+    return b"" if answer.undefined else answer.masks

@@ -12,9 +12,9 @@ from vbraille.braille.cells import Cells
 from vbraille.errors import InputError
 from vbraille.translate.blocks import MarkKind
 from vbraille.translate.languages import TableInfo, find_table, list_tables, preference, tables_of
-from vbraille.translate.liblouis import LOUIS
+from vbraille.translate.liblouis import LOUIS, cells_of
 from vbraille.translate.spellings import Kind, Undefined
-from vbraille.translate.undefined import Written, cells_of, write
+from vbraille.translate.undefined import Written, write
 from vbraille.wording import nearest, setting
 
 if TYPE_CHECKING:
@@ -117,8 +117,7 @@ class BrailleTable:
         following = "".join(text[place:].split(None, 1)[:1])
         word = "".join(text[:place].split()[-1:]) + following
         numbers = before.isdecimal() and after.isdecimal()
-        hyphen = self.cells_of("-")
-        ending = hyphen if len(hyphen) == 1 and any(hyphen) else _HYPHEN
+        ending = self.cells_of("-")[-1:] or _HYPHEN
         if before in _PARTING or after in _PARTING:
             ending = b""  # a line may end at these
         elif self.is_ueb and (numbers or not word.strip(_PUNCTUATION).isalpha()):
@@ -156,11 +155,6 @@ class BrailleTable:
         """Language and grade in words, such as "German contracted braille, grade 2"."""
         grade = f", grade {self.info.grade}" if self.info.grade else ""
         return f"{self.info.title}{grade}" if self.info.title else self.name
-
-    @cached_property
-    def brackets(self) -> str:
-        """Opening and closing bracket that the table can write; full cells if it has none."""
-        return next((pair for pair in ("[]", "()") if self.cells_of(pair)), "⠿⠿")
 
     @cached_property
     def _emphasis(self) -> dict[MarkKind, int]:
