@@ -11,6 +11,9 @@ import re
 from collections import Counter
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from vbraille.braille.cells import Cells
 from vbraille.translate.liblouis import LOUIS, Answer, UnendingError, cells_of
 from vbraille.translate.spellings import FULL_CELLS, Kind, Undefined, in_order, joins, spellings
 
@@ -44,6 +47,11 @@ class Written:
         self.masks += part.masks
         self.places += [start + place for place in part.places]
         self.otherwise += part.otherwise
+
+    def cells(self, length: int, start: int = 0) -> Cells:
+        """Cells for a text of a length that begins at a place of a book."""
+        masks, starts = np.frombuffer(self.masks, np.uint8), np.array(self.places, np.int64)
+        return Cells(masks, starts + start, start + length)
 
 
 def write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Written:
