@@ -124,10 +124,6 @@ def _write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Wr
             else:
                 left.append(origins[place])
         places = [origins[min(place, len(origins) - 1)] for place in answer.places]
-        # A spelling of ours must not come out blank, as · does in some tables.
-        inked = {owners[place].start for place, dot in zip(places, dots, strict=True) if dot}
-        ours = {part.start for part in map(owners.__getitem__, places) if part.kind}
-        left += ours - inked
         left = left or [origins[place] for place in _swallowed(table, spelt, answer)]
         if not left:
             otherwise = Counter((part.kind, part.original) for part in parts if part.kind)
