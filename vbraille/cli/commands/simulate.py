@@ -55,7 +55,6 @@ def command() -> None:
                    **_FAULTS),
     options.option("--corrupt", type=_share, default=0.0, help="Share of messages with a wrong "
                    "bit.", **_FAULTS),
-    _time("--stall", "Pause each second, such as 200ms."),
     _time("--unplug-every", "Time between unpluggings, such as 5s; needs --link."),
     _time("--hold", "Time for which a USB adapter holds bytes, such as 16ms."),
     _time("--boot", "Time for which the board starts, such as 1.5s."),
@@ -91,7 +90,6 @@ def serial(**chosen: Any) -> None:
             corrupt=chosen["corrupt"],
             hold_ms=1000 * chosen["hold"],
             boot_s=chosen["boot"],
-            stall_s=chosen["stall"],
             unplug_every_s=chosen["unplug_every"],
             defect=Defect(chosen["defect"]) if chosen["defect"] else None,
             seed=chosen["seed"],
