@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.render import Model
-    from vbraille.simulation.hand import Area
     from vbraille.simulation.motion import Motion
+    from vbraille.simulation.steering import Area
 
 LINES, CELLS, SEEDS = 8, 10, 6
 STRAYS = (0.15, 0.3, 0.45, 0.6)  # line pitches

@@ -65,7 +65,7 @@ def test_keys_press_buttons_and_turn_knobs():
         ("serial --rate 333", "333"),
         ("serial --travel nan", "--travel"),
         ("serial --drop 2", "--drop"),
-        ("serial --stall soon", "--stall"),
+        ("serial --boot soon", "--boot"),
         ("serial --defect no-watchdg", "did you mean no-watchdog"),
         ("serial --press knob", "knob"),
         ("serial --press 99@1s", "99"),

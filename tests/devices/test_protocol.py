@@ -252,7 +252,7 @@ def test_info_in_pieces_of_several_answers_is_put_together():
 
 def test_another_version_is_refused():
     with pytest.raises(DeviceError, match="version 2"):
-        Conversation(0).hear(line_of(info_pieces(INFO, version=2)[0]), 1)
+        Conversation(0).hear(line_of(b"\x81\x02\x00\x01{}"), 1)
 
 
 def test_rubbish_is_counted_and_changes_nothing():

@@ -205,7 +205,7 @@ def test_a_message_that_the_line_cuts_is_finished_first():
     line = Line(parse_address(f"socket://127.0.0.1:{listener.getsockname()[1]}"))
     link, _ = listener.accept()
     messages = [bytes([65 + n]) * 20 + b"\0" for n in range(6)]
-    with taking_parts(5):
+    with taking_parts():
         taken = [line.write(message) for message in messages]
     line.write(b"")
     line.close()

@@ -186,7 +186,7 @@ def test_what_cannot_be_shown_or_written_is_said_at_the_end():
 def test_a_script_that_the_table_does_not_know_is_named_once():
     book = Book(text_source("Все люди.\n\nИ равными."), TABLES["de-g2.ctb"])
     list(Layout(book, 20).lines())
-    (note,) = book.notes()
+    (note,) = book.source.notes()
     assert "Cyrillic" in note
     assert "‹language›" in note
 

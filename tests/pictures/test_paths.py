@@ -7,8 +7,8 @@ from vbraille.errors import InputError
 from vbraille.pictures.paths import path_of
 from vbraille.scene.scene import Canvas
 from vbraille.simulation.exploring import Wide, spiral
-from vbraille.simulation.hand import Area
 from vbraille.simulation.specs import parse_hand
+from vbraille.simulation.steering import Area
 
 CANVAS = Canvas(width_mm=100, height_mm=60)
 
@@ -23,7 +23,7 @@ def test_the_wide_path_goes_round_and_then_inward_and_leaves_no_place_out(size):
     x, y = spiral(*size, 10)
     assert list(zip(x[:4], y[:4], strict=True)) == [(0, 0), (width, 0), size, (0, height)]
     assert (x.min(), x.max(), y.min(), y.max()) == (0, width, 0, height)
-    course = Wide(10).read_page(Area(1, height, 0, width))
+    course = Wide(10).read_page(Area(1, height, width))
     t_s = np.arange(0, course.duration_s, 0.005)
     gone = np.interp(t_s, course.t_s, course.x_mm), np.interp(t_s, course.t_s, course.y_mm)
     for place in np.random.default_rng(1).uniform((0, 0), size, (200, 2)):

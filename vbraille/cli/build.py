@@ -201,7 +201,7 @@ class Page:
 
     def say_notes(self) -> None:
         """Print notes on the text that are new."""
-        for note in self.layout.book.notes():
+        for note in self.layout.book.source.notes():
             say(note, aside=True)
 
     def say_end(self) -> None:

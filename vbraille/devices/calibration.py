@@ -109,13 +109,11 @@ def load(settings: Path, device: _Device) -> Calibration | None:
         found = msgspec.convert(table, Calibration, strict=False)
     except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
         raise InputError(f"{path} is no calibration: {error}; mend it or move it away") from None
-    if found.device != name:
-        raise InputError(f"{path} is of {found.device} and not of {name}; move it away")
-    if found.gains.shape != device.display.shape:
-        rows, columns = device.display.shape
+    rows, columns = found.gains.shape
+    if (found.device, rows, columns) != (name, *device.display.shape):
         raise InputError(
-            f"{path} has {len(found.gain)} × {len(found.gain[0])} gains and {name} has "
-            f"{rows} × {columns} actuators; move it away, and calibrate again"
+            f"{path} is of {rows} × {columns} actuators of {found.device} and not of {name}; move "
+            f"it away, and calibrate again"
         )
     return found
 

@@ -89,7 +89,7 @@ class Info(msgspec.Struct, frozen=True):
         if not -(-self.top // 20) <= self.fast <= self.top:
             raise ValueError("`fast` is less than a twentieth of `top`, or more than `top`")
         if 1000 % self.rate:
-            raise ValueError("`rate` does not divide 1000")
+            raise ValueError(f"`rate` is {self.rate}, which does not divide 1000")
         if len(self.counts_per_mm) != len(self.travel_mm) or 0 in self.counts_per_mm:
             raise ValueError("`counts_per_mm` needs a number other than 0 for each of `travel_mm`")
 
@@ -141,12 +141,12 @@ def read_info(text: bytes) -> Info:
     return msgspec.structs.replace(info, name=name, serial=serial)
 
 
-def info_pieces(info: dict[str, object], version: int = VERSION) -> list[bytes]:
+def info_pieces(info: dict[str, object]) -> list[bytes]:
     """Bodies of the INFO messages that say this."""
     text = json.dumps(info, separators=(",", ":"), ensure_ascii=False).encode()
     pieces = [text[at : at + PIECE_BYTES] for at in range(0, len(text), PIECE_BYTES)]
     return [
-        bytes((INFO, version, number, len(pieces))) + piece for number, piece in enumerate(pieces)
+        bytes((INFO, VERSION, number, len(pieces))) + piece for number, piece in enumerate(pieces)
     ]
 
 

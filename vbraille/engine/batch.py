@@ -42,14 +42,12 @@ class BatchEngine(LocalEngine):
     InputError
         If the device has no hand that can be told to read a line.
     ValueError
-        If the rate is not 1 to 10,000 Hz, or ``poll_ticks`` is below 1.
+        If the rate is not 1 to 10,000 Hz.
     """
 
     device: SimulatedDevice
 
     def __init__(self, device: Device, rate_hz: float = 1000.0, poll_ticks: int = 1000) -> None:
-        if poll_ticks < 1:
-            raise ValueError(f"a poll does {poll_ticks} ticks; it must do 1 or more")
         hand = device.hand if isinstance(device, SimulatedDevice) else None
         if not isinstance(device, SimulatedDevice) or hand is None or hand.goes_on:
             raise InputError(

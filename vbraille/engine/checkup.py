@@ -48,7 +48,7 @@ _SWING_S = 0.25
 _HELD, _HOLD_S = 0.3, 0.1  # how far actuators go before a watchdog is left without frames
 _MOST_OF_TICK = 0.5  # for a driver's read and write together, as a share of a tick
 _ALIKE = 20  # first characters in which sentences on one kind of fault are alike
-_PARTS = 5  # frames of which a line takes a part at first
+_PARTS, _PART_BYTES = 5, 5  # frames of which a line takes a part at first, and that part
 _LATENCY = (
     "set the latency timer of its adapter to 1 ms (echo 1 | sudo tee "
     "/sys/bus/usb-serial/devices/ttyUSB0/latency_timer), as docs/building.md says"
@@ -132,7 +132,7 @@ class Watch:
 
 
 @contextmanager
-def taking_parts(most: int = 5) -> Iterator[list[str]]:
+def taking_parts() -> Iterator[list[str]]:
     """Have `os.write` and `socket.send` take a few bytes of each message at first, as lines may.
 
     Gives a list, to which a clause is added if what is sent next is not the rest of it.
@@ -145,10 +145,10 @@ def taking_parts(most: int = 5) -> Iterator[list[str]]:
         left = rest.pop(key, b"")
         if left and not bytes(data).startswith(left):
             faults[:] = ["its write does not finish a message that the line took in part"]
-        if left or len(data) <= most:
+        if left or len(data) <= _PART_BYTES:
             return data
-        rest[key] = bytes(data[most:])
-        return data[:most]
+        rest[key] = bytes(data[_PART_BYTES:])
+        return data[:_PART_BYTES]
 
     def send(self: socket.socket, data: Any, *flags: int) -> int:
         stream = self.type is socket.SOCK_STREAM

@@ -251,8 +251,7 @@ class Host(Watcher):
 
     def reader(self) -> RingReader:
         """Make another reader of the records, for what watches beside; it only reads."""
-        if self._process is None or self._ring is None:
-            raise DeviceError("no device is open; start the host first")
+        assert self._ring is not None, "it is started"
         return self._ring.another()
 
     def poll(self) -> NDArray[np.void]:

@@ -79,11 +79,11 @@ class Parent:
         with suppress(OSError):
             self._socket.send(msgspec.json.encode(said))
 
-    def first(self) -> dict[str, Any] | None:
-        """Wait for the first message; None if the parent is gone."""
+    def first(self) -> dict[str, Any]:
+        """Wait for the first message; empty if the parent is gone."""
         told = self._socket.recv(MOST_BYTES)
         self._socket.setblocking(False)
-        return json.loads(told) if told else None
+        return json.loads(told or b"{}")
 
     def obey(self) -> None:
         """Do what the parent wants; to be called when there may be something."""
@@ -180,7 +180,7 @@ def run(parent: Parent, memory: int) -> None:
     """
     warm_up(_ANY)  # what it is to drive is not told yet: any array will do
     told = parent.first()
-    if told is None:
+    if not told:
         return
     if told["log"] is not None:
         keep(told["log"])

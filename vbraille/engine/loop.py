@@ -245,16 +245,12 @@ class Loop:
 
     def _nowhere(self) -> DeviceError:
         x_mm, y_mm, theta_rad = self._pose[POSE_X:]
-        display = self.device.display
-        where = f"{x_mm} mm along x, {y_mm} mm along y, turned by {theta_rad} rad"
-        says = f"{display.name} says that its carriage is at {where}"
-        if not np.isfinite(self._pose[POSE_X:]).all():
-            why = "its driver must give numbers, or None as long as it knows none"
-        elif theta_rad and not display.turns:
-            why = "its driver must give Display turns=True, or Pose no angle"
-        else:
-            why = "switch it off and on, and look at its encoder with 'vbraille device check'"
-        return DeviceError(f"{says}, where it cannot be; {why}")
+        return DeviceError(
+            f"{self.device.display.name} says that its carriage is at {x_mm} mm along x, {y_mm} mm "
+            f"along y, turned by {theta_rad} rad, where it cannot be; look at its encoder with "
+            f"'vbraille device check', or at its driver, which must give numbers, and an angle "
+            f"only where its Display turns"
+        )
 
     def restart_clock(self) -> None:
         """Make the next tick due now, after a time in which the loop did not run."""

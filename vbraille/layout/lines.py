@@ -1,23 +1,30 @@
-"""Lines of cells: blocks broken into them, as full as they can be, by the rules of their script."""
+"""Lines of a book on a virtual page: its blocks broken into them, made as they are asked for."""
 
 from __future__ import annotations
 
 import re
 import unicodedata
 from bisect import bisect_left, bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import lru_cache
+from itertools import islice
+from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.braille.cells import UNICODE_BLANK, Cells
+from vbraille.braille.cells import UNICODE_BLANK, Cells, mask_of
+from vbraille.errors import InputError
+from vbraille.translate import Block, BlockKind
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
-    from vbraille.translate import Block, BrailleTable
+    from vbraille.braille.geometry import Geometry
+    from vbraille.display import Display
+    from vbraille.translate import Book, BrailleTable
 
 _LINES = 1 << 20  # more than a block has
 _SOLID = 0xFF  # in a search for blanks: a cell at which a line must not break
@@ -32,8 +39,26 @@ _CLOSING = frozenset(
 )
 _JOINERS = frozenset("\u17d2\u1039\u103a\u0f84\u200d")  # what stacks the next letter below
 
+_REMEMBERED = 64  # blocks
+STEP = 2  # cells of an indent
+# Where a page of the printed book begins, braille books have a row of dots 3 and 6 and then the
+# page's number. A whole line of them would only be a long way to the number under one finger.
+_RULE = bytes([mask_of((3, 6))] * 4)
+# Steps before the first line of a block and before the others; for items and quotations, beside
+# those of their level.
+_INDENTS = {
+    BlockKind.PARAGRAPH: (1, 0),
+    BlockKind.NOTE: (1, 0),
+    BlockKind.HEADING: (2, 2),
+    BlockKind.ITEM: (-1, 0),
+    BlockKind.QUOTE: (1, 0),
+    BlockKind.ROW: (0, 1),
+    BlockKind.LINE: (0, 1),
+    BlockKind.PAGE: (0, 0),
+}
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, slots=True)
 class Line:
     """A line of a page.
 
@@ -54,7 +79,7 @@ class Line:
     block: Block
     index: int
     indent: int
-    cells: Cells
+    cells: Cells = field(compare=False)
     first: int
     after: int
 
@@ -62,12 +87,6 @@ class Line:
     def id(self) -> int:
         """Number that no other line of the layout has, above 0; growing along the book."""
         return self.block.number * _LINES + self.index + 1
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Line) and self.id == other.id
-
-    def __hash__(self) -> int:
-        return self.id
 
     @property
     def place(self) -> int:
@@ -171,8 +190,8 @@ def wrap(
                 after, begin = table.divide(text, places[stop], rest)
             following = end - len(solid[stop:end].lstrip(b"\0"))
         own = cells[start:stop]
-        to = own.end - block.start
-        while to < len(text) and (following >= end or text[to].isspace()):
+        to = len(text) if following >= end else own.end - block.start
+        while to < len(text) and text[to].isspace():
             to += 1
         lines.append(Line(block, len(lines), indent, _signed(own, before, after), first, to))
         first, start, indent, before = to, following, runover, begin
@@ -185,24 +204,20 @@ def _ends(solid: bytes, places: Sequence[int], text: str) -> list[tuple[int, int
     is_spaceless = _SPACELESS.search(text) is not None
     for at in (cell for cell, mask in enumerate(solid) if mask):
         is_blank = stop < at
-        if stop and places[stop - 1] != places[at] and (is_blank or is_spaceless):
-            before, after = text[places[at] - 1], text[places[at]]
-            if is_blank:  # which is the table's own before a closing mark
-                may_begin = before.isspace() or after not in _CLOSING
-            else:
-                may_begin = _may_begin(before, after)
-            if may_begin:
-                ends.append((stop, at))
+        is_apart = stop and places[stop - 1] != places[at] and (is_blank or is_spaceless)
+        if is_apart and _may_begin(text[places[at] - 1], text[places[at]], is_blank):
+            ends.append((stop, at))
         stop = at + 1
     return ends
 
 
-def _may_begin(before: str, after: str) -> bool:
-    """Tell whether a line of a script without spaces may begin between two characters."""
-    if not _SPACELESS.search(before + after):
-        return False
+def _may_begin(before: str, after: str, is_blank: bool) -> bool:
+    """Tell whether a line may begin between two characters, which may have a blank between."""
+    if is_blank:  # which is the table's own before a closing mark
+        return before.isspace() or after not in _CLOSING
     is_mark = unicodedata.category(after)[0] == "M"
-    return not (is_mark or after in _CLOSING or before in _OPENING or before in _JOINERS)
+    is_bound = is_mark or after in _CLOSING or before in _OPENING or before in _JOINERS
+    return not is_bound and _SPACELESS.search(before + after) is not None
 
 
 def _signed(cells: Cells, before: bytes, after: bytes) -> Cells:
@@ -212,3 +227,142 @@ def _signed(cells: Cells, before: bytes, after: bytes) -> Cells:
     masks = np.frombuffer(before + cells.masks.tobytes() + after, np.uint8)
     starts = np.pad(cells.starts, (len(before), len(after)), mode="edge")
     return Cells(masks, starts, cells.end)
+
+
+def indents(block: Block, width: int) -> tuple[int, int]:
+    """Numbers of blank cells before a block's first line and before its other lines.
+
+    They are less than half of a line, so that there is room for words: a larger indent of the
+    kind is cut to the largest even number of cells that is.
+
+    Parameters
+    ----------
+    width
+        Number of cells in a line.
+    """
+    first, others = _INDENTS[block.kind]
+    depth = 0 if block.kind is BlockKind.HEADING else block.level
+    first = others if block.continues else first
+    most = (width - 1) // (2 * STEP) * STEP
+    return min((first + depth) * STEP, most), min((others + depth) * STEP, most)
+
+
+class Layout:
+    """Lines of a book.
+
+    Parameters
+    ----------
+    book
+        Cells of the book.
+    width
+        Number of cells in a line.
+    """
+
+    def __init__(self, book: Book, width: int) -> None:
+        self.book, self.width = book, width
+        self._lines = lru_cache(_REMEMBERED)(self._lay_out)
+        self._before = [0]  # numbers of lines before each block, as far as counted
+
+    def last(self) -> Line | None:
+        """Last line of the book; None if it has none. All of the book is read, but not laid out."""
+        last = self.book.source.block_at(len(self.book.source.text))
+        return None if last is None else next(self._lines_from(last.number, -1), None)
+
+    def beside(self, line: Line, step: int = 1) -> Line | None:
+        """Line that is some steps after another, or before it with a step below 0; None past it."""
+        way = 1 if step > 0 else -1
+        at = self._lines(line.block)[::way].index(line) + abs(step)
+        return next(islice(self._lines_from(line.block.number, way), at, None), None)
+
+    def place(self, place: int) -> tuple[Line, int] | None:
+        """Line and cell that a place of the source is on; None past the end.
+
+        A character that no cell stands for, such as a blank at a wrap, gives the next cell
+        after it.
+        """
+        block = self.book.source.block_at(place)
+        for line in () if block is None else self._lines_from(block.number):
+            cells, cell = line.cells, 0
+            if place < cells.end or (not len(cells) and place <= line.place):
+                if len(cells):
+                    cell, _ = cells.of_source(max(place, int(cells.starts[0])))
+                return line, line.indent + cell
+        return None
+
+    def progress(self, line: Line) -> float:
+        """Tell how much of the book stands before a line, 0 to 1."""
+        return self.book.source.progress(line.place)
+
+    def line(self, number: int) -> Line | None:
+        """Line of a number, from 1, counted from the start; None past either end."""
+        return next(self.lines(number), None) if number > 0 else None
+
+    def lines(self, first: int = 1, last: int | None = None) -> Iterator[Line]:
+        """Lines of a range of numbers, both ends included."""
+        before = self._count(lines=first)
+        at = bisect_left(before, first) - 1
+        stop = None if last is None else max(last, first - 1) - before[at]
+        yield from islice(self._lines_from(at), first - 1 - before[at], stop)
+
+    def number(self, line: Line) -> int:
+        """Number of a line, from 1, counted from the start."""
+        return self._count(blocks=line.block.number)[line.block.number] + line.index + 1
+
+    def count(self) -> int:
+        """Number of lines in all; this lays out the whole book."""
+        return self._count()[-1]
+
+    def _count(self, lines: float = inf, blocks: float = inf) -> list[int]:
+        """Numbers of lines before each block, as far as that many lines or blocks need it."""
+        before = self._before
+        for block in self.book.source.blocks(len(before) - 1):
+            if before[-1] >= lines or len(before) > blocks:
+                break
+            before.append(before[-1] + len(self._lines(block)))
+        return before
+
+    def _lines_from(self, number: int, way: int = 1) -> Iterator[Line]:
+        """Lines from the first of a block on, or back from its last."""
+        for block in self.book.source.blocks(number, way):
+            yield from self._lines(block)[::way]
+
+    def _lay_out(self, block: Block) -> list[Line]:
+        cells, before = self.book.cells(block), b""
+        if block.kind is BlockKind.PAGE:
+            if block.cells is not None or not len(cells):
+                return []  # the page has no number
+            before = _RULE[: max(self.width - len(cells), 0)]
+        table = self.book.table if block.cells is None else None  # ready cells are cut as they are
+        return wrap(block, cells, self.width, indents(block, self.width), table, before)
+
+
+def cells_per_line(geometry: Geometry, display: Display) -> int:
+    """Number of cells that a line has on a display.
+
+    Raises
+    ------
+    InputError
+        If there is no room for a single cell.
+    """
+    try:
+        return geometry.cells_per_line(display.span_mm)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+
+
+def wrap_text(text: str, table: BrailleTable, width: int | None = None) -> list[bytes]:
+    """Dot masks of the lines of a paragraph, which is one line without a width.
+
+    Parameters
+    ----------
+    text
+        Text of the paragraph.
+    table
+        Table by which it is translated.
+    width
+        Number of cells in a line.
+    """
+    words = " ".join(text.split())
+    cells = table.translate(words)
+    lines = wrap(Block(words), cells, width or max(len(cells), 1))
+    return [line.masks.tobytes() for line in lines]

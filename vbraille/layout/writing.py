@@ -8,7 +8,6 @@ from __future__ import annotations
 import hashlib
 import re
 import uuid
-from itertools import islice
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape
 
@@ -27,13 +26,6 @@ if TYPE_CHECKING:
 
 FORM_FEED, _BLANK = b"\f", b"\0"
 _NOT_XML = re.compile("[^\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-
-
-def cut_pages(rows: Iterable[bytes], lines: int) -> Iterator[list[bytes]]:
-    """Cut rows into pages of a number of lines, the last of which may be shorter."""
-    rows = iter(rows)
-    while page := list(islice(rows, lines)):
-        yield page
 
 
 def kept_pages(book: Book, width: int | None = None) -> list[list[bytes]]:

@@ -10,8 +10,8 @@ import numpy as np
 from vbraille.engine.constants import DIFFERENCE, MEAN
 from vbraille.errors import InputError
 from vbraille.simulation.exploring import Explorer
-from vbraille.simulation.hand import Area
 from vbraille.simulation.recorded import Recorded
+from vbraille.simulation.steering import Area
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def path_of(hand: Hand, canvas: Canvas, span_mm: float, rate_hz: float) -> Posed
             f"this hand does not go over a picture; give {setting('hand')} wide, wide:SPACING, "
             f"spot, spot:X,Y or recorded:FILE.csv"
         )
-    course = hand.read_page(Area(1, canvas.height_mm, -span_mm, canvas.width_mm))
+    course = hand.read_page(Area(1, canvas.height_mm, canvas.width_mm, start_mm=-span_mm))
     t_s, x_mm, y_mm, theta_rad = course.sample(rate_hz, canvas.height_mm / 2)
     x_mm += span_mm / 2
     return PosedPath(t_s, x_mm, y_mm, theta_rad, _velocities(x_mm, y_mm, rate_hz))

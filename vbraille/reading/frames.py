@@ -12,10 +12,10 @@ import numpy as np
 
 from vbraille.display import check_rate
 from vbraille.errors import InputError
-from vbraille.layout import cells_per_line, lay_out_text
+from vbraille.layout import Layout, cells_per_line
 from vbraille.live.states import line_shown
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
-from vbraille.translate import choose_table
+from vbraille.translate import Book, choose_table, text_source
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from vbraille.braille.cells import Cells
     from vbraille.display import Display
-    from vbraille.layout import Layout, Line
+    from vbraille.layout import Line
     from vbraille.recording import Print, Recording
     from vbraille.render.braille.style import BrailleStyle
     from vbraille.render.program import Program
@@ -381,7 +381,7 @@ def _laid_out(
     """Lay a text out in the lines of a display."""
     model = read_as(display, style)
     width = cells_per_line(model.style.geometry, model.display)
-    return model, lay_out_text(text, width, table, keep_lines=True)
+    return model, Layout(Book(text_source(text, keep_lines=True), table), width)
 
 
 def read_as(display: Model | Display, style: BrailleStyle | None) -> Model:

@@ -17,7 +17,7 @@ from vbraille.newfile import new_file
 from vbraille.reading.frames import print_of
 from vbraille.recording import Recorder, SceneRecorded
 from vbraille.signals import EAR
-from vbraille.simulation.hand import Area
+from vbraille.simulation.steering import Area
 from vbraille.wording import setting
 
 if TYPE_CHECKING:
@@ -225,10 +225,11 @@ def _walk(
     """Lines that are shown at once, and places along and down the page of the array's centre."""
     span_mm, geometry = model.display.span_mm, model.style.geometry
     x_mm = y_mm = np.zeros(0)
+    pitch_mm = geometry.line_pitch_mm
     while page := list(islice(lines, per_page or 1)):
         end_mm = max(geometry.extent_mm(len(line)) for line in page)
         if per_page:
-            motion = hand.read_page(Area(len(page), geometry.line_pitch_mm, -span_mm, end_mm))
+            motion = hand.read_page(Area(len(page), pitch_mm, end_mm, start_mm=-span_mm))
         else:
             motion = hand.read_line(-span_mm, end_mm)
         if not (hand.goes_on and x_mm.size):

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from vbraille.simulation.hand import Area
 from vbraille.simulation.motion import Course
+from vbraille.simulation.steering import Area
 
 if TYPE_CHECKING:
     from vbraille.display import Display
@@ -29,7 +29,7 @@ def area_of(display: Display, pitch_mm: float, lines: int = 0) -> Area | None:
     lines = lines or max(int(display.height_mm / pitch_mm - BELOW_PITCHES), 1)
     foot_mm = max(display.height_mm - lines * pitch_mm, 0.0)
     right_mm = display.travel_mm - display.span_mm
-    return Area(lines, pitch_mm, -display.span_mm, right_mm, foot_mm)
+    return Area(lines, pitch_mm, right_mm, foot_mm, -display.span_mm)
 
 
 class Carriage:

@@ -19,7 +19,7 @@ from vbraille.simulation.motion import MOST_MM, Motion
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from vbraille.simulation.hand import Area
+    from vbraille.simulation.steering import Area
 
 SPACING_MM = 10.0
 SPEED_MM_S = 60.0

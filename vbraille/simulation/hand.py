@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from vbraille.simulation.steering import Area
+
 # All ours. A finger drifts by less than what would bring the next line under the array's centre:
 # half a pitch, or three quarters of it with a hysteresis of a quarter.
 DRIFT_PITCHES = 0.15
@@ -41,38 +43,6 @@ SLOW_BACK_CHANCE = 0.3  # of feeling the line on the way back too, before readin
 LEAST_REREAD_MM = CLEAR_MM / TURN_SHORT[1]  # on a shorter line there is no room: one pass
 LEAST_MOVE_MM = 0.05  # a shorter rest of a way is gone in the same movement
 RESCANS_MM = (11.0, 22.0)  # a cell or two of both devices (10.48 and 11.1 mm)
-
-
-@dataclass(frozen=True, slots=True)
-class Area:
-    """Area of a page that its lines take, as a hand needs it.
-
-    Parameters
-    ----------
-    lines
-        Number of lines, 1 or more; line n, from 0, takes y from n to n + 1 line pitches.
-    pitch_mm
-        Distance from one line to the next.
-    start_mm, end_mm
-        Places where the array begins and ends each line, along x as in `Motion`.
-    foot_mm
-        How far below the last line a hand goes at the end, and stays there; 0 if it does not.
-    """
-
-    lines: int
-    pitch_mm: float
-    start_mm: float
-    end_mm: float
-    foot_mm: float = 0.0
-
-    def middle_mm(self, line: int) -> float:
-        """Place of the middle of a line along y."""
-        return (line + 0.5) * self.pitch_mm
-
-    @property
-    def height_mm(self) -> float:
-        """Height of all lines together."""
-        return self.lines * self.pitch_mm
 
 
 def read_lines(read_line: Callable[[float, float], Motion], area: Area) -> Motion:

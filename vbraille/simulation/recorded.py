@@ -17,7 +17,7 @@ from vbraille.wording import nearest
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from vbraille.simulation.hand import Area
+    from vbraille.simulation.steering import Area
 
 MOST_BYTES = 100_000_000
 # Ours: what a hand does in half a second cannot be told from its two ends.

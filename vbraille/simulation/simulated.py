@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qsl
 
 import numpy as np
+from msgspec.structs import replace
 
 from vbraille.devices.base import Device
 from vbraille.devices.events import Button, HandDone, HandHeld, Knob
@@ -14,7 +15,7 @@ from vbraille.display import Pose
 from vbraille.errors import InputError, check_range
 from vbraille.simulation.carriage import Carriage
 from vbraille.simulation.controls import MOST_BUTTONS, Controls, parse_moves
-from vbraille.simulation.hand import STILL_S, Area, Still
+from vbraille.simulation.hand import STILL_S, Still
 from vbraille.simulation.specs import parse_hand
 from vbraille.simulation.steering import GlideTo, Hold, LetGo, ReadLine, ReadPage
 from vbraille.wording import setting
@@ -54,7 +55,7 @@ class SimulatedDevice(Device):
     hand
         Hand that moves the carriage, as `obey` is told; `move` moves it as well.
     presses
-        Presses of its buttons, in seconds since the device was opened; `press`, `let_go` and
+        Presses of its buttons, in seconds since the device was opened; `press` and
         `turn` do more of the same at once.
 
     Attributes
@@ -98,10 +99,6 @@ class SimulatedDevice(Device):
         """Press a button, 1 to 8, or let it go."""
         check_range("button", button, 1, MOST_BUTTONS)
         self._events.append(Button(button, pressed=pressed, at_ns=self._now_ns()))
-
-    def let_go(self, button: int) -> None:
-        """Let go of a button, 1 to 8."""
-        self.press(button, pressed=False)
 
     def turn(self, knob: int, value: float) -> None:
         """Turn a knob, counted from 1, to a position from 0 to 1."""
@@ -176,8 +173,7 @@ class SimulatedDevice(Device):
         elif hand is not None and isinstance(order, ReadLine):
             self.move(hand.read_line(home_mm, order.end_mm))
         elif hand is not None and isinstance(order, ReadPage):
-            area = Area(order.lines, order.pitch_mm, home_mm, order.end_mm, order.foot_mm)
-            self.move(hand.read_page(area))
+            self.move(hand.read_page(replace(order, start_mm=home_mm)))
 
     def move(self, motion: Motion) -> None:
         """Move the hand along a motion from now on; it first goes to where the motion begins."""

@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from vbraille.display import Display
-    from vbraille.simulation.hand import Area, Hand
+    from vbraille.simulation.hand import Hand
     from vbraille.simulation.pty import Port
+    from vbraille.simulation.steering import Area
 
 _NS_PER_S: Final = 1_000_000_000
 _NS_PER_US: Final = 1000
 _TICK_NS: Final = 1_000_000
-STALL_EVERY_S: Final = 1.0
 UNPLUGGED_S: Final = 0.3
 _KEYS_EVERY: Final = 20  # ticks
 _OFF_PLACE_MM: Final = 5000.0
@@ -59,8 +59,6 @@ class Faults:
         How long bytes are held back, each way, as a USB adapter does that sends them in bulk.
     boot_s
         How long the board starts after its port is opened, which resets it.
-    stall_s
-        How long the device does nothing, `STALL_EVERY_S` after the last such time; 0 is never.
     unplug_every_s
         Time after a greeting until the device is unplugged, for `UNPLUGGED_S`; 0 is never.
     defect
@@ -73,7 +71,6 @@ class Faults:
     corrupt: float = 0.0
     hold_ms: float = 0.0
     boot_s: float = 0.0
-    stall_s: float = 0.0
     unplug_every_s: float = 0.0
     defect: Defect | None = None
     seed: int = 1
@@ -207,15 +204,11 @@ class Simulator:
             self._tick()
             self._note()
 
-    def _is_stalled(self, now_ns: int) -> bool:
-        since_s = (now_ns - self._begun_ns) / _NS_PER_S
-        return since_s % (STALL_EVERY_S + self._faults.stall_s) >= STALL_EVERY_S
-
     def _listen_until(self, due_ns: int) -> None:
         """Take what the host sends until a time."""
         while (left_ns := due_ns - time.monotonic_ns()) > 0:
             port = self._port.descriptor
-            if port is None or self._is_stalled(due_ns) or not self._port.is_open:
+            if port is None or not self._port.is_open:
                 time.sleep(left_ns / _NS_PER_S)
                 return
             if not select.select((port,), (), (), left_ns / _NS_PER_S)[0]:
@@ -263,7 +256,7 @@ class Simulator:
         controller.buttons = self._controls.buttons
         controller.knobs = [round(knob * _KNOB_TOP) for knob in self._controls.knobs]
         line, now_ns = controller.tick(now_us), time.monotonic_ns()
-        if line and now_ns >= self._started_ns and not self._is_stalled(now_ns):
+        if line and now_ns >= self._started_ns:
             self._out.put(line, now_ns)
         if message := self._out.take(now_ns):
             self._port.send(message)

@@ -21,23 +21,40 @@ class ReadLine(msgspec.Struct, frozen=True, tag=True):
     end_mm: _Finite
 
 
-class ReadPage(msgspec.Struct, frozen=True, tag=True):
-    """Order to read the lines of a page from its top, once.
+class Area(msgspec.Struct, frozen=True):
+    """Area of a page that its lines take.
 
     Parameters
     ----------
     lines, pitch_mm
-        Number of lines, and distance from one to the next.
+        Number of lines, and distance from one to the next; line n, from 0, takes y from n to n + 1
+        pitches.
     end_mm
         Place of the array's left column at the end of each line.
     foot_mm
-        How far below the last line the hand goes at the end; 0 if it does not.
+        How far below the last line a hand goes at the end, and stays there; 0 if it does not.
+    start_mm
+        Place of the array's left column at the start of each line; a device knows its own.
     """
 
     lines: Annotated[int, msgspec.Meta(ge=1)]
     pitch_mm: Annotated[float, msgspec.Meta(gt=0, le=1e9)]
     end_mm: _Finite
     foot_mm: _Finite = 0.0
+    start_mm: _Finite = 0.0
+
+    @property
+    def height_mm(self) -> float:
+        """Height of all lines together."""
+        return self.lines * self.pitch_mm
+
+    def middle_mm(self, line: int) -> float:
+        """Place of the middle of a line along y."""
+        return (line + 0.5) * self.pitch_mm
+
+
+class ReadPage(Area, frozen=True, tag=True):
+    """Order to read the lines of a page from its top, once."""
 
 
 class GlideTo(msgspec.Struct, frozen=True, tag=True):

@@ -32,7 +32,7 @@ def simulated_device(
 ) -> SimulatedDevice:
     """Make a device in memory, whose hand reads what is shown on it.
 
-    Its `press`, `let_go` and `turn` are what a finger does to buttons and knobs.
+    Its `press` and `turn` are what a finger does to buttons and knobs.
 
     Parameters
     ----------

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING
 from vbraille.braille.cells import Cells
 from vbraille.errors import InputError
 from vbraille.translate.blocks import MarkKind, cut_marks
-from vbraille.translate.languages import find_table
 from vbraille.translate.spellings import Kind, Undefined
-from vbraille.translate.tables import BrailleTable, six_dot_table, to_cells
+from vbraille.translate.tables import BrailleTable, find_table, six_dot_table
 from vbraille.translate.undefined import Written
 from vbraille.wording import count, setting
 
@@ -79,10 +78,6 @@ class Book:
         """Cells of a block of the source; they know the places that they stand for."""
         return self._cells(block)
 
-    def notes(self) -> list[str]:
-        """Sentences on the source and the table that are due now; each is given once."""
-        return self.source.notes()
-
     def _translate(self, block: Block) -> Cells:
         if block.cells is not None:
             own = block.cells
@@ -104,7 +99,7 @@ class Book:
         if written.otherwise:
             self.otherwise[block.number] = written.otherwise
             self._note_script(block, self.table)
-        return to_cells(written, len(block.text), block.start)
+        return written.cells(len(block.text), block.start)
 
     def _find_table(self, language: str) -> BrailleTable:
         """Table of a passage's language; the book's own if that is its language, or it has none."""
@@ -135,7 +130,7 @@ class Book:
         first, end = words[0][0], words[-1][1]
         language = re.split("[-_]", tag.strip().lower())[0]
         if not own.is_ueb:
-            opening, closing = own.brackets
+            opening, closing = next(filter(own.cells_of, ("[]", "()")), "⠿⠿")
             before, after = own.write(f"{opening}{language}:"), own.write(closing)
             signs = [(first, before.masks), (end, after.masks)]
         elif len(words) > _UEB_WORDS:
@@ -209,16 +204,13 @@ def remarks(book: Book, blocks: Iterable[Block]) -> list[str]:
 def _characters(found: Counter[str]) -> str:
     """Number of characters, and the names of the most frequent."""
     most = found.most_common(3)
-    named = [f"{number} of {describe(part)}" for part, number in most]
+    named = [
+        f"{number} of U+{ord(part[0]):04X} {unicodedata.name(part[0], '').lower()}".strip()
+        for part, number in most
+    ]
     if others := found.total() - sum(number for _, number in most):
         named.append(f"{others} of others")
     return f"{count(found.total(), 'character')} ({', '.join(named)})"
-
-
-def describe(part: str) -> str:
-    """Code and name of a character, as in "U+2022 bullet"."""
-    name = unicodedata.name(part[0], "").lower()
-    return f"U+{ord(part[0]):04X} {name}".strip()
 
 
 def _named(language: str, grade: int | None = None) -> str:

@@ -128,6 +128,8 @@ def text_source(text: str, *, keep_lines: bool = False, name: str = "the text") 
     InputError
         If there is nothing in it.
     """
+    if not text.strip():
+        raise InputError(f"{name} has nothing to read in it; give some")
     reader = partial(text_blocks, text=text, keep_lines=keep_lines)
     return Source(name, "text", io.BytesIO(text.encode("utf-8", "replace")), reader)
 

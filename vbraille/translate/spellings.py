@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from itertools import chain, permutations, repeat
+from functools import cache
+from itertools import permutations
 from pathlib import Path
 from typing import TYPE_CHECKING
 from unicodedata import category, combining, decimal, name, normalize
 
 from vbraille.braille.cells import UNICODE_BLANK
 from vbraille.braille.spelling import LETTERS, to_braille
+from vbraille.translate.liblouis import cells_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
 
 class Undefined(StrEnum):
@@ -39,7 +41,6 @@ class Undefined(StrEnum):
 class Kind(StrEnum):
     """Way in which a part of a text is written that the table leaves undefined."""
 
-    EQUIVALENT = "the same, composed or ordered otherwise"
     PLAIN = "a plain spelling, or without accents"
     NAME = "by its name"
     MARKED = "a marker"
@@ -62,7 +63,7 @@ _LEFT_OUT = "\0\u00ad\ufeff"
 # First letters of alphabets in squares and circles, and of flags; Unicode has no spelling of these.
 _ALPHABETS = (0x1F150, 0x1F170)
 _FLAGS = 0x1F1E6
-_SKIN_TONES = range(0x1F3FB, 0x1F400)
+_SKIN_TONES = "🏻🏼🏽🏾🏿"
 # Zeros of the scripts whose digits tables have, where they do not have all.
 _ZEROS = "0٠۰०০੦૦୦௦౦೦൦๐໐༠၀០"
 # What no normal form has, but tables have, and the letters that it is equal to: Greek ; and ·,
@@ -94,9 +95,9 @@ def lowered(text: str) -> str:
 
 
 def _small(text: str, forms: str) -> str:
-    small = text.translate(str.maketrans(f"{_ON_LINE}\u2212", forms + forms[_ON_LINE.index("-")]))
+    small = text.replace("\u2212", "-").translate(str.maketrans(_ON_LINE, forms))
     is_word = text.isalpha() and len(text) > 1
-    return text if is_word or not all(sign in forms for sign in small) else small
+    return text if is_word or set(small) - set(forms) else small
 
 
 def joins(part: str, sign: str) -> bool:
@@ -117,55 +118,47 @@ def in_order(part: str) -> str:
     return next(_compositions(part), part) if "א" <= part[0] <= "ת" else part
 
 
-def spellings(
-    part: str, undefined: set[str], how: Undefined, cells_of: Callable[[str], bytes]
-) -> Iterator[tuple[Kind | None, str]]:
-    """Texts that may stand for a letter with its marks; the last is always written.
+@cache
+def spellings(part: str, table: str, how: Undefined) -> list[tuple[Kind | None, str]]:
+    """Texts that may stand for a letter with its marks, best first; the last is always written.
 
     Parameters
     ----------
     part
         The letter or sign, with its marks.
-    undefined
-        Characters of it that the table leaves undefined.
+    table
+        File name or path of the table that leaves it undefined, or a part of it.
     how
         What is written where nothing else can be.
-    cells_of
-        Function that gives the dot masks of a text by the table; none for what it cannot write.
     """
-    yield None, part
-    if part.isspace():
-        yield None, " "
-        yield None, "⠀"
-    if _is_invisible(part):
-        yield None, ""
-    seen = {part}
-    for kind, text in chain(
-        zip(repeat(Kind.EQUIVALENT), _equivalents(part)),
-        _small_forms(part, cells_of),
-        zip(repeat(Kind.PLAIN), chain(_plain_spellings(part), _bare_letters(part, undefined))),
-    ):
-        if text not in seen:
-            seen.add(text)
-            yield kind, text
-    code = f"U+{ord(part[0]):04X}"
-    named = name(part[0], code).lower()
+    code, named = f"U+{ord(part[0]):04X}", name(part[0], "").lower()
     # A picture or a symbol that has a name people know.
-    is_emoji = category(part[0]) in ("So", "Sk") and part[0] >= "\u2300" and named != code.lower()
-    if how is Undefined.DROP:
-        yield Kind.MARKED, ""
-    elif how is Undefined.CODE:
-        yield from _bracketed(Kind.MARKED, code)
-    elif how is Undefined.NAME or is_emoji:
-        yield from _bracketed(Kind.NAME if is_emoji else Kind.MARKED, named)
-    for marker in ("[?]", "(?)", "?", FULL_CELLS):
-        yield Kind.MARKED, "".join(marker if sign in undefined else sign for sign in part)
-    yield Kind.MARKED, FULL_CELLS
+    is_emoji = named != "" and category(part[0]) in ("So", "Sk") and part[0] >= "\u2300"
+    as_it_is = [part, *([" ", "⠀"] if part.isspace() else []), *[""][: _is_invisible(part)]]
+    dots, plain = _small_forms(part, table)
+    said = {Undefined.CODE: code, Undefined.NAME: named or code}.get(how, named * is_emoji)
+    instead = [""] if how is Undefined.DROP else _bracketed(said) if said else []
+    markers = [
+        text
+        for marker in ("[?]", "(?)", "?", FULL_CELLS)
+        for text in (part[0] + marker, marker + part[1:], marker)
+    ]
+    found: dict[str, Kind | None] = {}
+    for kind, texts in (
+        (None, [*as_it_is, *_equivalents(part), *dots]),
+        (Kind.PLAIN, [*plain, *_plain_spellings(part), *_bare_letters(part)]),
+        (Kind.NAME if is_emoji and said == named else Kind.MARKED, instead),
+        (Kind.MARKED, markers),
+    ):
+        for text in texts:
+            if part.isspace() or not text.isspace():
+                found.setdefault(text, kind)
+    # Even full cells can be eaten by a rule; they are counted all the same.
+    return [*((kind, text) for text, kind in found.items()), (Kind.MARKED, "")]
 
 
-def _bracketed(kind: Kind, text: str) -> Iterator[tuple[Kind, str]]:
-    yield kind, f"[{text}]"
-    yield kind, f"({text})"
+def _bracketed(text: str) -> list[str]:
+    return [f"[{text}]", f"({text})"]
 
 
 def _equivalents(part: str) -> Iterator[str]:
@@ -189,25 +182,23 @@ def _compositions(part: str) -> Iterator[str]:
             yield composed + "".join(mark for mark in marks if mark not in needed)
 
 
-def _small_forms(part: str, cells_of: Callable[[str], bytes]) -> Iterator[tuple[Kind, str]]:
-    """Spellings of small numbers: by the table's own sign for such, or as in 10^6 and H_2O."""
-    for forms, sign in ((_RAISED, "^"), (_LOWERED, "_")):
-        if part[0] not in forms:
-            continue
-        text = part.translate(str.maketrans(forms, _ON_LINE))
-        is_one = text.isdigit() or len(text) == 1
-        own, two = cells_of(forms[2]), cells_of("2")
-        if not own and cells_of("²").startswith(_UEB_RAISED):
-            own = _UEB_LOWERED + two
-        below = bytes(map(_lower, two[-1:]))
-        if two and own != two and own.endswith(two):
-            before = to_braille(own.removesuffix(two))
-            yield Kind.EQUIVALENT, before + (text if is_one else f"⠣{text}⠜")
-        elif below and own.endswith(below) and text.isdigit():
-            digits = to_braille(_lower(cells_of(digit)[-1]) for digit in text)
-            yield Kind.EQUIVALENT, to_braille(own.removesuffix(below)) + digits
-        for plain in (sign + (text if is_one else f"({text})"), f"({text})", f" {text} "):
-            yield Kind.PLAIN, plain
+def _small_forms(part: str, table: str) -> tuple[list[str], list[str]]:
+    """Spellings of a small number by the table's own sign for such, and as in 10^6 and H_2O."""
+    forms, sign = (_RAISED, "^") if part[0] in _RAISED else (_LOWERED, "_")
+    if part[0] not in forms:
+        return [], []
+    text = part.translate(str.maketrans(forms, _ON_LINE))
+    is_one = text.isdigit() or len(text) == 1
+    own, two = cells_of(table, forms[2]), cells_of(table, "2")
+    if not own and cells_of(table, "²").startswith(_UEB_RAISED):
+        own = _UEB_LOWERED + two
+    below, dots = bytes(map(_lower, two[-1:])), []
+    if two and own != two and own.endswith(two):
+        dots = [to_braille(own.removesuffix(two)) + (text if is_one else f"⠣{text}⠜")]
+    elif below and own.endswith(below) and text.isdigit():
+        digits = bytes(_lower(cells_of(table, digit)[-1]) for digit in text)
+        dots = [to_braille(own.removesuffix(below) + digits)]
+    return dots, [sign + (text if is_one else f"({text})"), f"({text})", f" {text} "]
 
 
 def _lower(mask: int) -> int:
@@ -220,9 +211,8 @@ def _plain_spellings(part: str) -> Iterator[str]:
     yield from _SIGNS.get(part, ())
     letters = "".join(_letter(sign, _FLAGS) for sign in part)
     if letters:
-        yield f"[{letters}]"
-        yield f"({letters})"
-    if ord(part[0]) in _SKIN_TONES:
+        yield from _bracketed(letters)
+    if part in _SKIN_TONES:
         yield ""
     for first in _ALPHABETS:
         if letter := _letter(part, first):
@@ -230,23 +220,20 @@ def _plain_spellings(part: str) -> Iterator[str]:
     plain = normalize("NFKC", part)
     if plain[:1].isdigit() and "⁄" in plain:
         plain = f" {plain}"  # ½ after a number is not the number's next digit
-    if plain.lstrip() != plain and not plain[1].isdigit():
+    if plain.lstrip() != plain and not plain[1:2].isdigit():
         return  # an accent alone, which is not a blank with an accent
     yield plain
     for which in (0, -1):
         yield "".join(_SIGNS.get(sign, sign)[which] for sign in plain)
-    if any(map(str.isdecimal, plain)):
-        for zero in map(ord, _ZEROS):
-            yield "".join(
-                chr(zero + decimal(sign)) if sign.isdecimal() else _SIGNS.get(sign, sign)[-1]
-                for sign in plain
-            )
+    digits = "".join(str(decimal(sign, _SIGNS.get(sign, sign)[-1])) for sign in plain)
+    for zero in map(ord, _ZEROS):
+        yield digits.translate({ord("0") + digit: zero + digit for digit in range(10)})
     yield part.lower()
 
 
-def _bare_letters(part: str, undefined: set[str]) -> Iterator[str]:
-    """The letter without the accents that are undefined, then without any, then small."""
-    yield "".join(sign for sign in part if not (_is_accent(sign) and sign in undefined))
+def _bare_letters(part: str) -> Iterator[str]:
+    """The letter without one of its accents, then without any, then small."""
+    yield from (part.replace(accent, "") for accent in filter(_is_accent, part))
     bare = "".join(sign for sign in normalize("NFKD", part) if not _is_accent(sign))
     yield bare
     yield from _SIGNS.get(bare, ())

@@ -10,14 +10,12 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass, field
-from functools import cache, partial
-from typing import TYPE_CHECKING
 
-from vbraille.translate.liblouis import LOUIS, Answer, UnendingError
+import numpy as np
+
+from vbraille.braille.cells import Cells
+from vbraille.translate.liblouis import LOUIS, Answer, UnendingError, cells_of
 from vbraille.translate.spellings import FULL_CELLS, Kind, Undefined, in_order, joins, spellings
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 _STRANGER = "\ue123"  # no table has it
 _MOST_LOST = 3  # unending words of a passage that are tried, before the rest is given up
@@ -49,6 +47,11 @@ class Written:
         self.masks += part.masks
         self.places += [start + place for place in part.places]
         self.otherwise += part.otherwise
+
+    def cells(self, length: int, start: int = 0) -> Cells:
+        """Cells for a text of a length that begins at a place of a book."""
+        masks, starts = np.frombuffer(self.masks, np.uint8), np.array(self.places, np.int64)
+        return Cells(masks, starts + start, start + length)
 
 
 def write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Written:
@@ -89,10 +92,9 @@ class _Part:
 
     start: int
     original: str
-    undefined: set[str]
-    spellings: Iterator[tuple[Kind | None, str]]
-    spelt: str
+    spelt: str = ""
     kind: Kind | None = None
+    tried: int = 0
 
 
 def _write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Written:
@@ -100,18 +102,14 @@ def _write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Wr
         answer = LOUIS.translate(table, text, forms)
         if not answer.undefined and not _swallowed(table, text, answer):
             return Written(answer.masks, answer.places)
-    originals: list[str] = []
-    for sign in text:
-        if originals and joins(originals[-1], sign):
-            originals[-1] += sign
+    parts: list[_Part] = []
+    for place, sign in enumerate(text):
+        if parts and joins(parts[-1].original, sign):
+            parts[-1].original += sign
         else:
-            originals.append(sign)
-    parts, start = [], 0
-    for original in originals:
-        undefined: set[str] = set()
-        ways = spellings(original, undefined, how, partial(cells_of, table))
-        parts.append(_Part(start, original, undefined, ways, in_order(original)))
-        start += len(original)
+            parts.append(_Part(place, sign))
+    for part in parts:
+        part.spelt = in_order(part.original)
     owners = [part for part in parts for _ in part.original]
     while True:
         spelt, origins = _spelt(parts)
@@ -126,19 +124,14 @@ def _write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Wr
             else:
                 left.append(origins[place])
         places = [origins[min(place, len(origins) - 1)] for place in answer.places]
-        # A spelling of ours must not come out blank, as · does in some tables.
-        inked = {owners[place].start for place, dot in zip(places, dots, strict=True) if dot}
-        ours = {part.start for part in map(owners.__getitem__, places) if part.kind}
-        left += ours - inked
         left = left or [origins[place] for place in _swallowed(table, spelt, answer)]
         if not left:
             otherwise = Counter((part.kind, part.original) for part in parts if part.kind)
             return Written(bytes(dots), places, otherwise)
-        for place in left:
-            owners[place].undefined.add(text[place])
         for part in {owners[place] for place in left}:
-            # Even full cells can be eaten by a rule; they are counted all the same.
-            part.kind, part.spelt = next(part.spellings, (Kind.MARKED, ""))
+            ways = spellings(part.original, table, how)
+            part.kind, part.spelt = ways[min(part.tried, len(ways) - 1)]
+            part.tried += 1
 
 
 def _spelt(parts: list[_Part]) -> tuple[str, list[int]]:
@@ -173,10 +166,3 @@ def _swallowed(table: str, text: str, answer: Answer) -> list[int]:
         if LOUIS.translate(table, other).masks == answer.masks:
             swallowed.append(place)
     return swallowed
-
-
-@cache
-def cells_of(table: str, text: str) -> bytes:
-    """Dot masks of a short text by a table; none if it leaves some of it undefined."""
-    answer = LOUIS.translate(table, text)
-    return b"" if answer.undefined else answer.masks

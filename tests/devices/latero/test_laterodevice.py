@@ -66,7 +66,6 @@ def test_it_reads_shows_and_takes_leave(latero):
         assert device.placing is Placing.DONE
         assert device.acknowledges
         assert "offsets=4452,4294960000,120034" in device.particulars.protocol
-        assert "controller 1.0, I/O interface 1.0" in device.particulars.protocol
         watching = device.watchdog._process.pid
     assert latero.board.at_rest
     assert not latero.board.powered

@@ -88,11 +88,12 @@ def _write_laid(ctx: click.Context, chosen: dict[str, Any], book: Book) -> None:
 
 
 def _laid(page: Page, form: str) -> Iterable[bytes]:
-    from vbraille.layout.writing import cut_pages, pef
+    from vbraille.layout.writing import pef
 
     if form != "pef":
         return (f"{_printed(line, form)}\n".encode() for line in page.lines())
-    pages = cut_pages((line.masks.tobytes() for line in page.lines()), _LINES)
+    rows = [line.masks.tobytes() for line in page.lines()]
+    pages = [rows[at : at + _LINES] for at in range(0, len(rows), _LINES)]
     width, book = page.layout.width, page.layout.book
     return pef(pages, _head(book, width, _LINES), width, _LINES, rowgap=_rowgap(book))
 
@@ -122,7 +123,7 @@ def _write_kept(chosen: dict[str, Any], book: Book) -> None:
         first = book.source.block(0)
         content = brf(pages, FORM_FEED if first and first.kind is BlockKind.PAGE else b"")
     _write(chosen, content)
-    for note in (*book.notes(), *filter(None, [said])):
+    for note in (*book.source.notes(), *filter(None, [said])):
         say(note, aside=True)
 
 

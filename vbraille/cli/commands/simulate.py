@@ -25,7 +25,7 @@ _press = options.option("--press", metavar="MOVES", default="", help="Moves of b
 
 def _time(name: str, help: str) -> Callable:  # noqa: A002 - click's word
     """Return the option of a time after which, or for which, something goes wrong."""
-    return options.option(name, type=options.seconds, metavar="TIME", help=help,
+    return options.option(name, type=options.seconds, default="0s", metavar="TIME", help=help,
                           **_FAULTS)  # fmt: skip
 
 
@@ -49,7 +49,6 @@ def command() -> None:
                    **_FAULTS),
     options.option("--corrupt", type=_share, default=0.0, help="Share of messages with a wrong "
                    "bit.", **_FAULTS),
-    _time("--stall", "Pause each second, such as 200ms."),
     _time("--unplug-every", "Time between unpluggings, such as 5s; needs --link."),
     _time("--hold", "Time for which a USB adapter holds bytes, such as 16ms."),
     _time("--boot", "Time for which the board starts, such as 1.5s."),
@@ -84,10 +83,9 @@ def serial(**chosen: Any) -> None:
         faults = Faults(
             drop=chosen["drop"],
             corrupt=chosen["corrupt"],
-            hold_ms=1000 * (chosen["hold"] or 0.0),
-            boot_s=chosen["boot"] or 0.0,
-            stall_s=chosen["stall"] or 0.0,
-            unplug_every_s=chosen["unplug_every"] or 0.0,
+            hold_ms=1000 * chosen["hold"],
+            boot_s=chosen["boot"],
+            unplug_every_s=chosen["unplug_every"],
             defect=Defect(chosen["defect"]) if chosen["defect"] else None,
             seed=chosen["seed"],
         )

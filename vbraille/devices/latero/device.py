@@ -151,31 +151,21 @@ def parse_latero_address(text: str) -> LateroAddress:
         )
     if colon and not 1 <= _whole(port) <= _U16:
         raise InputError(f"port is {port!r}; it must be a whole number from 1 to {_U16}")
+    offsets, power = None, 0
     options = dict(parse_qsl(query, keep_blank_values=True))
-    offsets, power = options.pop("offsets", None), options.pop("power", None)
-    if options:
-        raise InputError(
-            f"there is no option {min(options)!r} of a Latero; there is offsets and power"
-        )
-    if offsets is not None and not re.fullmatch(r"-?[0-9]{1,10}(,-?[0-9]{1,10}){2}", offsets):
-        raise InputError(
-            f"offsets are {offsets!r}; give three whole numbers, the counts of encoders 0, 1 and 2 "
-            f"at angle 0, such as offsets=4452,9928,2004"
-        )
-    if power not in (None, "none") and not 0 <= _whole(power) <= _U16:
-        raise InputError(
-            f"power is {power!r}; give the controller's register that switches motor power, 0 to "
-            f"{_U16}, or none"
-        )
-    return LateroAddress(
-        host,
-        _whole(port) if colon else PORT,
-        None
-        if offsets is None
-        else tuple(int(count) & 0xFFFF_FFFF for count in offsets.split(",")),
-        None if power == "none" else _whole(power or "0"),
-        power is not None,
-    )
+    for name, value in options.items():
+        if name == "offsets" and re.fullmatch(r"-?[0-9]{1,10}(,-?[0-9]{1,10}){2}", value):
+            offsets = tuple(int(count) & 0xFFFF_FFFF for count in value.split(","))
+        elif name == "power" and (value == "none" or 0 <= _whole(value) <= _U16):
+            power = None if value == "none" else _whole(value)
+        else:
+            raise InputError(
+                f"a Latero has no option {name}={value}; give offsets=N,N,N, three whole numbers, "
+                f"the counts of encoders 0, 1 and 2 at angle 0, or power=N, the controller's "
+                f"register that switches motor power, 0 to {_U16}, or power=none"
+            )
+    port_number = _whole(port) if colon else PORT
+    return LateroAddress(host, port_number, offsets, power, "power" in options)
 
 
 def _whole(text: str) -> int:
@@ -444,19 +434,11 @@ class LateroDevice(Device):
 
     @property
     def particulars(self) -> Particulars | None:  # type: ignore[override]
-        """Versions by its status words, and where its encoders are at angle 0."""
-        if self.answer is None:
-            return None
-        controller, interface = (
-            f"{status >> 8 & 0xF}.{status >> 4 & 0xF}"
-            for status in (self.answer.controller, self.answer.interface)
-        )
+        """Tell where its encoders are at angle 0."""
         where = "its offsets are unknown until it is shown its lower left corner"
         if self._offsets is not None:
             where = f"offsets={','.join(map(str, self._offsets))}"
-        return Particulars(
-            f"latero, controller {controller}, I/O interface {interface}, {where}", buttons=2
-        )
+        return Particulars(f"latero, {where}", buttons=2)
 
     @property
     def tripped_ms(self) -> float | None:  # type: ignore[override]
