@@ -99,7 +99,7 @@ def test_emphasis_is_that_of_the_table():
 )
 @pytest.mark.parametrize("table", ["en-ueb-g2.ctb", "de-g2.ctb", "zh-tw.ctb", "ar.tbl"])
 def test_cells_and_text_lead_to_each_other(table, text):
-    cells = BrailleTable(table).translate(text, start=100)
+    cells = BrailleTable(table).write(text).cells(len(text), 100)
     assert cells.end == 100 + len(text)
     assert (cells.starts[1:] >= cells.starts[:-1]).all()
     assert all(100 <= start < cells.end for start in cells.starts)

@@ -4,10 +4,19 @@ from vbraille.braille.cells import Cells
 from vbraille.translate.blocks import Block, BlockKind, Mark, MarkKind
 from vbraille.translate.book import Book, remarks
 from vbraille.translate.formats import FORMATS, open_source, text_source
-from vbraille.translate.languages import TableInfo, find_table, has_tables, list_tables, tables_of
 from vbraille.translate.source import Heading, Source
 from vbraille.translate.spellings import Undefined
-from vbraille.translate.tables import BrailleTable, choose_table, six_dot_table, translate_text
+from vbraille.translate.tables import (
+    BrailleTable,
+    TableInfo,
+    choose_table,
+    find_table,
+    has_tables,
+    list_tables,
+    six_dot_table,
+    tables_of,
+    translate_text,
+)
 
 __all__ = [
     "FORMATS",

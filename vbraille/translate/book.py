@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING
 from vbraille.braille.cells import Cells
 from vbraille.errors import InputError
 from vbraille.translate.blocks import MarkKind, cut_marks
-from vbraille.translate.languages import find_table
 from vbraille.translate.spellings import Kind, Undefined
-from vbraille.translate.tables import BrailleTable, six_dot_table, to_cells
+from vbraille.translate.tables import BrailleTable, find_table, six_dot_table
 from vbraille.translate.undefined import Written
 from vbraille.wording import count, setting
 
@@ -100,7 +99,7 @@ class Book:
         if written.otherwise:
             self.otherwise[block.number] = written.otherwise
             self._note_script(block, self.table)
-        return to_cells(written, len(block.text), block.start)
+        return written.cells(len(block.text), block.start)
 
     def _find_table(self, language: str) -> BrailleTable:
         """Table of a passage's language; the book's own if that is its language, or it has none."""

@@ -29,6 +29,10 @@ class UnendingError(Exception):
     """A translation takes too long, or liblouis crashes on it."""
 
 
+class _EndedError(UnendingError):
+    """The child has ended otherwise than by its limit of time."""
+
+
 class Answer(NamedTuple):
     """Cells that liblouis writes for a text.
 
@@ -87,13 +91,14 @@ class Louis:
         UnendingError
             If it takes too long.
         """
-        with self._asking:  # once more if a child was ended from outside
-            answered = self._exchange(question) or self._exchange(question)
-        if answered is None:
-            raise UnendingError
-        if isinstance(answered[0], Exception):
-            raise answered[0]
-        return answered[0]
+        with self._asking:
+            try:
+                answer = self._exchange(question)
+            except _EndedError:  # perhaps from outside
+                answer = self._exchange(question)
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
 
     def stop(self) -> None:
         """End the child."""
@@ -103,8 +108,7 @@ class Louis:
             with suppress(OSError), child:  # what was not sent yet
                 pass
 
-    def _exchange(self, question: tuple[Any, ...]) -> tuple[Any] | None:
-        """Ask the child; None if it has ended otherwise than by its limit of time."""
+    def _exchange(self, question: tuple[Any, ...]) -> Any:
         if self._child is None:
             command = [sys.executable, "-P", str(_HERE / "louischild.py")]
             pipe = subprocess.PIPE
@@ -115,7 +119,7 @@ class Louis:
         try:
             pickle.dump(question, child.stdin)
             child.stdin.flush()
-            return (pickle.load(child.stdout),)
+            return pickle.load(child.stdout)
         except (EOFError, OSError, pickle.UnpicklingError):
             code = child.wait()
             self.stop()
@@ -124,9 +128,7 @@ class Louis:
                 "liblouis's own Python binding is not installed; install python3-louis of "
                 "your system (the package louis of PyPI is something else)"
             )
-        if code == -signal.SIGPROF:
-            raise UnendingError
-        return None
+        raise UnendingError if code == -signal.SIGPROF else _EndedError
 
 
 LOUIS = Louis()

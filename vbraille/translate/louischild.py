@@ -26,7 +26,6 @@ KEYS = (b"display-name", b"index-name", b"language", b"grade", b"dots", b"type")
 LIBRARY = louis.liblouis
 LIBRARY.lou_getTableInfo.restype = ctypes.c_char_p
 LIBRARY.lou_listTables.restype = ctypes.POINTER(ctypes.c_char_p)
-LIBRARY.lou_getTypeformForEmphClass.restype = ctypes.c_ushort
 LIBRARY.lou_setLogLevel(60_000)
 
 
@@ -57,12 +56,6 @@ def list_tables() -> list[list[str]]:
             [Path(path.decode()).name, *(said.decode("utf-8", "replace") for said in told)]
         )
     return found
-
-
-def emphasis_bits(table: str, names: list[str]) -> list[int]:
-    """Bits that a table has for classes of emphasis; 0 for a class that it does not have."""
-    compile_table(table)
-    return [LIBRARY.lou_getTypeformForEmphClass(table.encode(), name.encode()) for name in names]
 
 
 def display_dots(table: str, characters: str) -> list[int]:

@@ -41,7 +41,6 @@ class Undefined(StrEnum):
 class Kind(StrEnum):
     """Way in which a part of a text is written that the table leaves undefined."""
 
-    EQUIVALENT = "the same, composed or ordered otherwise"
     PLAIN = "a plain spelling, or without accents"
     NAME = "by its name"
     MARKED = "a marker"
@@ -146,14 +145,14 @@ def spellings(part: str, table: str, how: Undefined) -> list[tuple[Kind | None, 
     ]
     found: dict[str, Kind | None] = {}
     for kind, texts in (
-        (None, as_it_is),
-        (Kind.EQUIVALENT, [*_equivalents(part), *dots]),
+        (None, [*as_it_is, *_equivalents(part), *dots]),
         (Kind.PLAIN, [*plain, *_plain_spellings(part), *_bare_letters(part)]),
         (Kind.NAME if is_emoji and said == named else Kind.MARKED, instead),
         (Kind.MARKED, markers),
     ):
         for text in texts:
-            found.setdefault(text, kind)
+            if part.isspace() or not text.isspace():
+                found.setdefault(text, kind)
     # Even full cells can be eaten by a rule; they are counted all the same.
     return [*((kind, text) for text, kind in found.items()), (Kind.MARKED, "")]
 

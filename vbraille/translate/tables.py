@@ -1,17 +1,21 @@
-"""A braille table: text and its marks to cells."""
+"""Braille tables: those that there are, the one of a language, and text to cells by one.
+
+liblouis finds the literary, uncontracted table of a language; what its readers have otherwise is
+listed in `languages.toml`. `docs/languages.md` has the outcome for every language.
+"""
 
 from __future__ import annotations
 
+import re
 import string
-from functools import cached_property
+import tomllib
+from dataclasses import dataclass
+from functools import cache, cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from vbraille.braille.cells import Cells
 from vbraille.errors import InputError
 from vbraille.translate.blocks import MarkKind
-from vbraille.translate.languages import TableInfo, find_table, list_tables, preference, tables_of
 from vbraille.translate.liblouis import LOUIS, cells_of
 from vbraille.translate.spellings import Kind, Undefined
 from vbraille.translate.undefined import Written, write
@@ -20,21 +24,151 @@ from vbraille.wording import nearest, setting
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from vbraille.braille.cells import Cells
     from vbraille.translate.blocks import Mark
+
+_DATA = tomllib.loads(Path(__file__).with_name("languages.toml").read_text("utf-8"))
+# Tables of a standard that is no longer in force, or with signs that books leave out.
+_DATED = re.compile(r"_\d{4}\b|-\d{4}[-.]|-detailed\b")
+
 
 _SIX_DOTS = 0x3F
 _LONGEST_NAME = 1_000  # liblouis puts a name into 2 kB without checking that it fits
-_CLASSES = {
-    MarkKind.ITALIC: "italic",
-    MarkKind.BOLD: "bold",
-    MarkKind.UNDERLINE: "underline",
-    MarkKind.SUPERSCRIPT: "super",
-    MarkKind.SUBSCRIPT: "sub",
-}
+# Bits that liblouis has for the emphasis of a character.
+_EMPHASIS = {MarkKind.ITALIC: 1, MarkKind.UNDERLINE: 2, MarkKind.BOLD: 4}
 _HYPHEN = b"\x24"  # dots 3 and 6
 _UEB_CONTINUATION = b"\x10"  # dot 5, after which a number goes on without its sign
 _PARTING = "-‐‑–—/"
 _PUNCTUATION = ".,;:!?()[]«»“”‘’\"'…"
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class TableInfo:
+    """Metadata of a table.
+
+    Parameters
+    ----------
+    name
+        File name, which is what `BrailleTable` takes.
+    title
+        Display name; empty if unsaid.
+    language
+        BCP 47 tag, such as ``fr`` or ``en-GB``; empty if unsaid.
+    grade
+        "0", "1", "2" …; empty if unsaid.
+    dots
+        6 or 8; 0 if unsaid.
+    kind
+        "literary" or "computer"; empty if unsaid.
+    """
+
+    name: str
+    title: str = ""
+    language: str = ""
+    grade: str = ""
+    dots: int = 0
+    kind: str = ""
+
+
+@cache
+def list_tables() -> tuple[TableInfo, ...]:
+    """All tables that have metadata, by name."""
+    found = []
+    for name, title, index, language, grade, dots, kind in LOUIS.ask("list_tables"):
+        number = 6 if name in _DATA["six_dots"] else int(dots or 0)
+        found.append(TableInfo(name, title or index, language, grade, number, kind))
+    return tuple(sorted(found))
+
+
+def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
+    """Tag that liblouis has for a language, in lower case, and the tables that it lists for it.
+
+    Parameters
+    ----------
+    language
+        BCP 47 tag, with hyphens or underscores; for "fr-CA" the tables for French are taken,
+        unless there are some for Canada.
+
+    Raises
+    ------
+    InputError
+        If there are no tables; the message names the nearest languages.
+    """
+    tag = wanted = language.strip().lower().replace("_", "-")
+    if not wanted:
+        raise InputError(
+            f"the language is empty; give a tag such as fr, or leave {setting('language')} out"
+        )
+    while tag:
+        tag = _DATA["same"].get(tag, tag)
+        found = tuple(
+            table for table in list_tables() if f"{table.language}-".lower().startswith(f"{tag}-")
+        )
+        if found or tag in _DATA["usual"]:
+            return tag, found
+        tag = tag.rpartition("-")[0]
+    tags = sorted({table.language for table in list_tables()} - {""})
+    raise InputError(
+        f"no braille table for language {language!r}{nearest(wanted, tags, 3)} "
+        f"(vbraille tables lists all)"
+    )
+
+
+def has_tables(language: str) -> bool:
+    """Tell whether there is a table for a language, whatever its grade."""
+    try:
+        tables_of(language)
+    except InputError:
+        return False
+    return True
+
+
+def find_table(language: str = "en", grade: int | None = None) -> str:
+    """Name of the table for a language and grade.
+
+    Parameters
+    ----------
+    language
+        BCP 47 tag; a region may follow ("en-GB").
+    grade
+        0 or 1 for uncontracted, 2 and up for contracted braille; None for what is usual in the
+        language. Where a language numbers its grades otherwise, as German does, its numbers count.
+
+    Raises
+    ------
+    InputError
+        If there is no such table; the message says which grades there are.
+    """
+    tag, tables = tables_of(language)
+    named = _DATA["usual"].get(tag, {})
+    wanted = "usual" if grade is None else str(grade)
+    plain = [table for table in tables if not _is_contracted(table)]
+    fitting = [table for table in tables if table.grade == wanted and table.kind != "computer"]
+    if grade is None:
+        fitting = list(tables)
+    elif not fitting and grade < 2:
+        wanted, fitting = "1", plain
+    if wanted in named:
+        return named[wanted]
+    if fitting:
+        return min(fitting, key=_preference).name
+    there = {*named, *(table.grade for table in tables), *["1"][: len(plain)]}
+    raise InputError(
+        f"there is no grade {grade} for language {language!r}; there is "
+        f"{', '.join(sorted(filter(str.isdecimal, there)))} "
+        f"(vbraille tables {setting('language')} {language})"
+    )
+
+
+def _is_contracted(table: TableInfo) -> bool:
+    return table.grade not in ("", "0", "1")
+
+
+def _preference(table: TableInfo) -> tuple[bool, bool, bool, bool, int, str]:
+    """Key by which the most usual of a language's tables sorts first."""
+    dated = _DATED.search(table.name) is not None
+    computer, contracted = table.kind == "computer", _is_contracted(table)
+    return computer, table.dots == 8, dated, contracted, len(table.language), table.name
 
 
 class BrailleTable:
@@ -67,23 +201,15 @@ class BrailleTable:
                 f"{nearest(name[:_LONGEST_NAME], names, 3)} (vbraille tables lists all)"
             ) from None
 
-    def translate(self, text: str, marks: Sequence[Mark] = (), start: int = 0) -> Cells:
-        """Cells of a text, whose first character is at a place of a book.
-
-        Parameters
-        ----------
-        text, marks
-            Text of a paragraph, and the emphasis of its parts.
-        start
-            Place of its first character.
-        """
-        return to_cells(self.write(text, marks), len(text), start)
+    def translate(self, text: str, marks: Sequence[Mark] = ()) -> Cells:
+        """Cells of a paragraph, with the emphasis of its parts; the first stands for place 0."""
+        return self.write(text, marks).cells(len(text))
 
     def write(self, text: str, marks: Sequence[Mark] = ()) -> Written:
         """Dots of a text, with what was written otherwise than it stands."""
         forms = None
         for mark in marks:
-            if bit := self._emphasis.get(mark.kind):
+            if bit := _EMPHASIS.get(mark.kind):
                 forms = forms or [0] * len(text)
                 for place in range(mark.start, min(mark.end, len(text))):
                     forms[place] |= bit
@@ -156,18 +282,6 @@ class BrailleTable:
         grade = f", grade {self.info.grade}" if self.info.grade else ""
         return f"{self.info.title}{grade}" if self.info.title else self.name
 
-    @cached_property
-    def _emphasis(self) -> dict[MarkKind, int]:
-        """Bits of the table's classes of emphasis; 0 for a class that it does not have."""
-        bits = LOUIS.ask("emphasis_bits", self.name, list(_CLASSES.values()))
-        return dict(zip(_CLASSES, bits, strict=True))
-
-
-def to_cells(written: Written, length: int, start: int = 0) -> Cells:
-    """Cells of what was written for a text of a length that begins at a place of a book."""
-    masks = np.frombuffer(written.masks, np.uint8)
-    return Cells(masks, np.array(written.places, np.int64) + start, start + length)
-
 
 def choose_table(
     language: str | None = None,
@@ -205,11 +319,10 @@ def choose_table(
 
 
 def six_dot_table(language: str) -> str | None:
-    """Name of the most usual six-dot table of a language; None if there is none."""
+    """Name of the usual table of a language, if it has six dots; otherwise None."""
     try:
-        _, tables = tables_of(language)
-        names = [find_table(language), *(table.name for table in sorted(tables, key=preference))]
-        return next((name for name in names if not BrailleTable(name).eight_dots), None)
+        name = find_table(language)
+        return None if BrailleTable(name).eight_dots else name
     except InputError:
         return None
 

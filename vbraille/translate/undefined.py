@@ -11,6 +11,9 @@ import re
 from collections import Counter
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from vbraille.braille.cells import Cells
 from vbraille.translate.liblouis import LOUIS, Answer, UnendingError, cells_of
 from vbraille.translate.spellings import FULL_CELLS, Kind, Undefined, in_order, joins, spellings
 
@@ -44,6 +47,11 @@ class Written:
         self.masks += part.masks
         self.places += [start + place for place in part.places]
         self.otherwise += part.otherwise
+
+    def cells(self, length: int, start: int = 0) -> Cells:
+        """Cells for a text of a length that begins at a place of a book."""
+        masks, starts = np.frombuffer(self.masks, np.uint8), np.array(self.places, np.int64)
+        return Cells(masks, starts + start, start + length)
 
 
 def write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Written:
@@ -116,10 +124,6 @@ def _write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Wr
             else:
                 left.append(origins[place])
         places = [origins[min(place, len(origins) - 1)] for place in answer.places]
-        # A spelling of ours must not come out blank, as · does in some tables.
-        inked = {owners[place].start for place, dot in zip(places, dots, strict=True) if dot}
-        ours = {part.start for part in map(owners.__getitem__, places) if part.kind}
-        left += ours - inked
         left = left or [origins[place] for place in _swallowed(table, spelt, answer)]
         if not left:
             otherwise = Counter((part.kind, part.original) for part in parts if part.kind)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from functools import partial
-from itertools import cycle
+from functools import cache, partial
+from itertools import cycle, islice
 from random import Random
-from typing import Any
 
 import numpy as np
 from msgspec import Struct, structs
@@ -16,14 +15,13 @@ from vbraille.braille.cells import Cells, dots_of
 from vbraille.braille.spelling import to_braille
 from vbraille.errors import InputError
 from vbraille.sessions.planning.design import Catch, Setting
-from vbraille.sessions.planning.order import Limit, balanced_orders, ordered
+from vbraille.sessions.planning.order import Limit, Placed, balanced_orders, ordered
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.trial import BLANK, Trial
 from vbraille.sessions.planning.values import Look
 from vbraille.toml import which
 
 PSEUDONYM = "[A-Za-z0-9][A-Za-z0-9_-]{0,31}"
-Placed = tuple[str, str]  # an item, and the condition in which it is shown
 
 # How long people take, as in the source: 17 s for a string of five letters and its answer.
 READING_S, ANSWERING_S, BREAK_S = 2.2, 4.0, 120.0
@@ -93,7 +91,8 @@ def make_plan(
     random = Random(drawn)
     blocks = _deal(protocol, participant, order, random)
     try:
-        blocks = ordered(blocks, *_rules(protocol), random)
+        quarters = protocol.rules.balanced_quarters
+        blocks = ordered(blocks, _limits(protocol), random, quarters=quarters)
         places = [(placed, block) for block, own in enumerate(blocks, 1) for placed in own]
         trials = _trials(protocol, places, random)
         if protocol.design.catch is not None:
@@ -171,44 +170,42 @@ def _deal(protocol: Protocol, participant: str, order: int, random: Random) -> l
         elif design.order == "shuffled":
             random.shuffle(names)
         return [[(item, name) for item in items[name]] for name in names]
-    blocks: list[list[Placed]] = [[] for _ in range(design.blocks)]
     # Dealt like cards, so that two blocks differ by one trial at most, of a condition and in all.
-    into = cycle(blocks)
-    for name in names:
-        for item in random.sample(items[name], len(items[name])):
-            next(into).append((item, name))
-    return blocks
+    cards = [
+        (item, name) for name in names for item in random.sample(items[name], len(items[name]))
+    ]
+    return [cards[block :: design.blocks] for block in range(design.blocks)]
 
 
-def _rules(protocol: Protocol) -> tuple[list[Limit], Any]:
-    """Return the limits of the rules, and the level that quarters share evenly, if any."""
+def _limits(protocol: Protocol) -> list[Limit]:
+    """Return how many neighbours may be alike, and in what."""
     rules, limits = protocol.rules, []
-    reorder = getattr(protocol.design, "reorder", False)
-    levels = {each.name: protocol.levels(each.name, "") for each in protocol.conditions}
+    reorders = getattr(protocol.design, "reorder", False)
+    levels = {
+        each.name: protocol.levels(each.name, "") | {"condition": each.name}
+        for each in protocol.conditions
+    }
 
+    @cache
     def level(name: str, shown: Placed) -> str:
         """Return the condition of a trial, its level of a factor, or its cell of a column."""
         item, condition = shown
-        own = protocol.columns.get(item, {}) | levels[condition] | {"condition": condition}
-        return own.get(name, "")
+        return (protocol.columns.get(item, {}) | levels[condition]).get(name, "")
 
     if rules.never_twice_running:
-        limits.append(Limit(lambda shown: "".join(sorted(shown[0])) if reorder else shown[0], 1))
+        limits.append(Limit(lambda shown: "".join(sorted(shown[0])) if reorders else shown[0], 1))
     for name, most in rules.at_most_running.items():
         limits.append(Limit(partial(level, name), most))
-    return limits, (lambda shown: shown[1]) if rules.balanced_quarters else None
+    return limits
 
 
 def _practice(protocol: Protocol, random: Random) -> list[Trial]:
     """Return the trials of practice; all that there may be, if a criterion ends it."""
     practice = protocol.practice
-    if not practice.most:
-        return []
-    items, names = cycle(protocol.practised), [each.name for each in protocol.conditions]
-    shown = [(next(items), name) for name, _ in zip(cycle(names), range(practice.most))]
+    both = zip(cycle(protocol.practised), cycle(protocol.conditions), strict=False)
+    shown = [(item, condition.name) for item, condition in islice(both, practice.most)]
     if practice.order == "shuffled":
-        limits, _ = _rules(protocol)
-        (shown,) = ordered([shown], limits, None, random)
+        (shown,) = ordered([shown], _limits(protocol), random, quarters=False)
     return _trials(protocol, [(placed, 0) for placed in shown], random)
 
 
@@ -216,12 +213,12 @@ def _trials(protocol: Protocol, places: list[tuple[Placed, int]], random: Random
     """Return trials of items in conditions and blocks; they get their numbers later."""
     setting = Setting(protocol.masks, protocol.room, random)
     looks = {each.name: each.over(protocol.display) for each in protocol.conditions}
-    gap_s, columns, found = protocol.trial.gap_s, protocol.columns, []
+    gap_s, found = protocol.trial.gap_s, []
     for (item, condition), block in places:
         stimuli = protocol.design.stimuli(item, looks[condition], setting)
         gap = round(random.uniform(*gap_s), 3) if isinstance(gap_s, tuple) else gap_s
-        own = columns.get(item, {})
-        found.append(Trial(block == 0, 0, block, condition, item, stimuli, gap, columns=own))
+        columns = protocol.columns.get(item, {})
+        found.append(Trial(block == 0, 0, block, condition, item, stimuli, gap, columns=columns))
     return found
 
 
@@ -250,19 +247,19 @@ def length_s(protocol: Protocol, plan: Plan) -> float:
 
     What is felt for a time that the protocol sets is counted at its whole length.
     """
-    pace, every = protocol.trial, protocol.session.break_every
-    seconds = 0.0
+    pace, session = protocol.trial, protocol.session
+    seconds, tested, blocks = 0.0, 0, 1
     for trial in plan.trials:
-        cells = sum(len(each.before + each.cells + each.after) for each in trial.stimuli)
+        cells = sum(len(each.masks(0)) for each in trial.stimuli)
         felt_s = pace.exposure_s or READING_S * cells or BREAK_S
         if pace.exposure_s and trial.values:
             felt_s *= len(trial.stimuli)
         seconds += trial.gap_s + felt_s + min(ANSWERING_S, pace.answer_s or ANSWERING_S)
-    tested = sum(not trial.practice for trial in plan.trials)
-    blocks = max((trial.block for trial in plan.trials), default=1)
-    breaks = max((tested - 1) // every if every else 0, blocks - 1)
-    seconds += breaks * (protocol.session.break_s or BREAK_S)
-    return min(seconds, protocol.session.limit_s or seconds)
+        tested += not trial.practice
+        blocks = max(blocks, trial.block)
+    within = (tested - 1) // session.break_every if session.break_every else 0
+    seconds += max(within, blocks - 1) * (session.break_s or BREAK_S)
+    return min(seconds, session.limit_s or seconds)
 
 
 def plan_lines(protocol: Protocol, plan: Plan) -> Iterator[str]:
@@ -310,16 +307,10 @@ def to_brf(protocol: Protocol, plan: Plan) -> str:
 
 def _described(trial: Trial) -> Iterator[str]:
     """Say what a trial shows."""
-    yield trial.condition
-    if trial.catch:
-        yield f"catch {trial.catch}"
     first = trial.stimuli[0]
-    if first.text:
-        yield first.text
-    if trial.values:
-        yield " and ".join(f"{value:g}" for value in trial.values)
-    elif first.picture:
-        yield first.picture
+    yield from filter(None, (trial.condition, trial.catch and f"catch {trial.catch}", first.text))
+    if trial.values or first.picture:
+        yield first.picture or " and ".join(f"{value:g}" for value in trial.values)
     else:
         yield " / ".join(to_braille(each.masks(0)) for each in trial.stimuli)
         yield "dots " + " / ".join(_dots(each.masks(0)) for each in trial.stimuli)
