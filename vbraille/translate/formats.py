@@ -53,7 +53,6 @@ _FORMATS = {
     "unicode-braille": Format("braillefiles:read_brf", takes=("encoding",)),
     "pef": Format("braillefiles:read_pef", (".pef",)),
 }
-FORMATS = tuple(_FORMATS)
 _KEEP_LINES = ("brf", "unicode-braille", "pef")  # whatever is asked for
 _ROOTS = {"html": "html", "head": "html", "title": "html", "body": "html"}
 _ROOTS |= {"dtbook": "dtbook", "pef": "pef"}
@@ -108,7 +107,7 @@ def open_source(
     try:
         found = find_format(stream, name) if form is None else form.lower()
         if found not in _FORMATS:
-            raise InputError(f"unknown file format {form!r}{nearest(found, FORMATS)}")
+            raise InputError(f"unknown file format {form!r}{nearest(found, _FORMATS)}")
         given = {"encoding": encoding, "brf_table": brf_table, "keep_lines": keep_lines or None}
         options = _fitting(found, name, given, wishes)
         stream.seek(0)

@@ -218,7 +218,7 @@ class BrailleTable:
         """Dot masks of a short text; none if the table leaves some of it undefined."""
         return cells_of(self.name, text)
 
-    def divide(self, text: str, place: int, rest: bytes) -> tuple[bytes, bytes]:
+    def divide(self, text: str, place: int) -> tuple[bytes, bytes]:
         """Cells that end a line within a word or a number, and those that begin the next line.
 
         Parameters
@@ -227,25 +227,24 @@ class BrailleTable:
             Text of the block.
         place
             Index of the character at which the next line begins.
-        rest
-            Cells of the word from there on.
         """
         before, after = text[place - 1], text[place]
-        following = "".join(text[place:].split(None, 1)[:1])
-        word = "".join(text[:place].split()[-1:]) + following
         numbers = before.isdecimal() and after.isdecimal()
         if numbers and self.is_ueb:
             return _UEB_CONTINUATION, b""
-        ending = self.cells_of("-")[-1:] or _HYPHEN
+        following = "".join(text[place:].split(None, 1)[:1])
+        word = "".join(text[:place].split()[-1:]) + following
+        ending, sign = self.cells_of("-")[-1:] or _HYPHEN, b""
         if before in _PARTING or after in _PARTING:
             ending = b""  # a line may end at these
         elif self.is_ueb and not word.strip(_PUNCTUATION).isalpha():
             ending = _UEB_CONTINUATION
-        if not numbers and not (before.isupper() and after.isupper()):
-            return ending, b""
-        whole = self.cells_of(following)
-        sign = whole.removesuffix(rest if numbers else self.cells_of(following.lower()))
-        return ending, sign if len(sign) < len(whole) else b""
+        if numbers:
+            sign = self.cells_of(after)[:-1]
+        elif before.isupper() and after.isupper():
+            whole, small = map(self.cells_of, (following, following.lower()))
+            sign = whole.removesuffix(small) if small and whole.endswith(small) else b""
+        return ending, sign
 
     @cached_property
     def info(self) -> TableInfo:
