@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from vbraille.render.braille.style import Tuning as Tuning
     from vbraille.scene.scene import Canvas as Canvas
     from vbraille.scene.scene import Scene as Scene
-    from vbraille.sessions.session import Conditions as Conditions
+    from vbraille.sessions.running.conditions import Conditions as Conditions
     from vbraille.sessions.session import Session as Session
     from vbraille.translate.tables import translate_text as translate_text
 
@@ -55,7 +55,7 @@ if TYPE_CHECKING:
 _PLACES = {
     "BrailleStyle": "vbraille.render.braille.style",
     "Canvas": "vbraille.scene.scene",
-    "Conditions": "vbraille.sessions.session",
+    "Conditions": "vbraille.sessions.running.conditions",
     "Device": "vbraille.devices.base",
     "DeviceError": "vbraille.errors",
     "Display": "vbraille.display",

@@ -4,10 +4,9 @@ import re
 import time
 from dataclasses import dataclass, field
 
-from vbraille.sessions.running.answers import Line, NoMoreAnswers, Press
+from vbraille.sessions.running.answers import Line, NoMoreAnswers
 from vbraille.sessions.session import Session
 
-KEY = object()  # the participant's key, in a script
 HEAD = 'name = "mini"\ntitle = "A few cells"\nmodel = "vbd"\n'
 MINI = f'{HEAD}[design]\nkind = "list"\nstrings = ["ac", "ca", "aa"]\n'
 SURE = "[question]\nkind = 'identify'\nconfidence = { least = 1, most = 4 }\n"
@@ -24,14 +23,11 @@ class Person:
 
     name = "typed"
     typed = True
-    felt = awaits_key = False
+    felt = False
 
     def __init__(self, said, script):
         self.said, self.script = said, list(script)
         self.seen, self.waited = len(said), 0
-
-    def watch(self, _key):
-        return any(line is KEY for _, line in self.script)
 
     def line(self, _asked, wait_s):
         if not self.script:
@@ -41,7 +37,7 @@ class Person:
             if re.search(pattern, sentence):
                 self.seen, self.waited = number + 1, 0
                 self.script.pop(0)
-                return Press() if line is KEY else Line(line)
+                return Line(line)
         time.sleep(wait_s)
         self.waited += 1
         most = 1500 if wait_s else 300

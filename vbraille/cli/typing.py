@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING
 
 from vbraille.reading.keys import Keyboard
 from vbraille.reading.prompt import Prompt
-from vbraille.sessions.running.answers import Line, Press, Typed
+from vbraille.sessions.running.answers import Line, Typed
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Self
-
-_NAMES = {"\t": "tab"}  # of keys, by the characters that they type
 
 
 class TypedKeys(Typed):
@@ -29,7 +27,6 @@ class TypedKeys(Typed):
         super().__init__()
         self._speak = speak
         self._keyboard = Keyboard()
-        self._key = ""
         self._prompt = self._new()
 
     def __enter__(self) -> Self:
@@ -45,11 +42,6 @@ class TypedKeys(Typed):
         self._draw()
         self._speak(sentence)
 
-    def watch(self, key: str) -> bool:
-        """Look out for the participant's key."""
-        self._key = _NAMES.get(key, key)
-        return True
-
     def take(self) -> None:
         """Have the terminal give each key at once."""
         self._keyboard.take()
@@ -64,9 +56,6 @@ class TypedKeys(Typed):
     def _read(self, wait_s: float) -> None:
         """Take the keys that were pressed within some time."""
         for key in self._keyboard.pressed(wait_s):
-            if self.awaits_key and key == self._key and not self._prompt.text:
-                self._given.append(Press())
-                continue
             try:
                 said = self._prompt.press(key)
             except KeyError:

@@ -25,20 +25,6 @@ def test_answers_are_edited_and_commands_typed(tmp_path):
     assert sat.of("note")[0].data["text"] == "the fan is on"
 
 
-def test_the_participants_key_ends_reading_at_one_press(tmp_path):
-    sat = made(tmp_path, MINI + "[trial]\nend = 'key:space'\n")
-    slow = (*ARGUMENTS[:2], "--hand", "sweep:10", "--cues", "none")
-    with Terminal("session", "resume", sat.session.path, *slow) as terminal:
-        terminal.until(r"cue: trial 1")
-        terminal.type(" ")
-        terminal.until(r"ended: .* by key space")
-        terminal.type("1 14\n")  # a blank within a line is a character
-        terminal.until(r"answer: trial 1")
-        terminal.type("stop\n")
-        terminal.until(r"record: ")
-    assert sat.of("ended")[0].data["by"] == "key:space"
-
-
 def test_what_the_protocol_asks_about_the_participant_is_asked_before(tmp_path):
     field = "[[fields]]\nname = 'hand'\nask = 'Reading hand'\nchoices = ['right', 'left']\n"
     path = tmp_path / "mini.toml"

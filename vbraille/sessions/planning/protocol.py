@@ -39,7 +39,6 @@ from vbraille.toml import Table, WrongValue
 MOST_LEAD_CELLS = 20
 MOST_PIN_CELLS = 200
 FIRST_CODE, LEAST_CODE, MOST_CODE = 101, 40, 254  # bytes of markers; lower ones are of events
-KEYS = {"enter": "\n", "space": " ", "tab": "\t"}
 
 
 class DisplayLook(Look, frozen=True, kw_only=True):
@@ -156,8 +155,7 @@ class Pace(Table, frozen=True, kw_only=True):
     warning_s
         Time after the cue at which the participant is warned.
     end
-        What ends reading, if not the hand: "button:1" and so on of the device, "key:enter",
-        "key:space", "key:tab", or another key by its character, such as "key:+".
+        What ends reading, if not the hand: "button:1" and so on of the device, or "key:enter".
     exposure_s, exposure_from
         Time after which the stimulus is taken away, from the cue or from the first touch.
     answer_s, late
@@ -170,7 +168,7 @@ class Pace(Table, frozen=True, kw_only=True):
     # A fixed tuple beside a number with bounds crashes msgspec 0.22.
     gap_s: Seconds | Annotated[tuple[Seconds, ...], Meta(min_length=2, max_length=2)] = 0.5
     warning_s: Seconds | None = None
-    end: Annotated[str, Meta(pattern=r"^(button:[1-8]|key:(enter|space|tab|[^\s]))$")] | None = None
+    end: Annotated[str, Meta(pattern="^(button:[1-8]|key:enter)$")] | None = None
     exposure_s: Duration | None = None
     exposure_from: Literal["cue", "contact"] = "cue"
     answer_s: Duration | None = None
@@ -180,12 +178,6 @@ class Pace(Table, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         if isinstance(self.gap_s, tuple) and self.gap_s[0] > self.gap_s[1]:
             raise WrongValue("gap_s", "must have the shorter time first")
-
-    @property
-    def key(self) -> str:
-        """The character that ends reading; empty if no key does."""
-        _, _, name = (self.end or "").partition("key:")
-        return KEYS.get(name, name)
 
     @property
     def button(self) -> int | None:

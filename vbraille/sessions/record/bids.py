@@ -10,18 +10,17 @@ import gzip
 import io
 import json
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from importlib.metadata import version
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vbraille.csvfiles import parse_csv
+from vbraille.csvfiles import read_csv
 from vbraille.errors import InputError
-from vbraille.files import write_files
+from vbraille.files import write_file, write_files
 from vbraille.names import likeness
 from vbraille.sessions.record.record import Content, Event, read, reading
 from vbraille.sessions.record.ticks import read_all
@@ -38,7 +37,7 @@ session that was stopped and gone on with has several runs. *_beh.tsv has a row 
 *_events.tsv what happened in a run, and *_recording-carriage_physio.tsv.gz where the array was at
 each moment. The file of the same name that ends in .json says what each column holds.
 """
-EVENTS, RECORDED = COLUMNS_OF["events"], COLUMNS_OF["recording"]
+ABOUT = {"Name": "vbraille sessions", "BIDSVersion": "1.9.0", "DatasetType": "raw"}
 # Fields of the ticks that a recording's columns are, and their formats.
 FIELDS = {"x_mm": "%.6g", "y_mm": "%.6g", "vx_mm_s": "%.6g", "tick": "%.12g", "line": "%.12g",
           "flags": "%.12g"}  # fmt: skip
@@ -82,30 +81,27 @@ def _add(content: Content, folder: Path, anonymous: bool) -> list[Path]:
     for told in folder.glob("sub-*/ses-*/beh/*_beh.json"):
         if json.loads(told.read_text("utf-8")).get(SUM) == content.events[0].data["plan"]:
             raise InputError(f"{content.path} is there already, as {told.with_suffix('.tsv')}")
-    known = [path.name[4:] for path in (folder / f"sub-{label}").glob("ses-*")]
-    number = max((int(name) for name in known if name.isdecimal()), default=0) + 1
-    home = folder / f"sub-{label}" / f"ses-{number:02}" / "beh"
-    stem = f"sub-{label}_ses-{number:02}_task-{label_of(content.head['protocol'])}"
-    files = {home / name: made for name, made in _files(content, stem, anonymous).items()}
-    about = {
-        "Name": "vbraille sessions", "BIDSVersion": "1.9.0", "DatasetType": "raw",
-        "GeneratedBy": [{"Name": "vbraille", "Version": version("vbraille")}],
-    }  # fmt: skip
+    known = [int(path.name[4:]) for path in folder.glob(f"sub-{label}/ses-[0-9][0-9]")]
+    visit = f"ses-{max(known, default=0) + 1:02}"
+    home = folder / f"sub-{label}" / visit / "beh"
+    stem = f"sub-{label}_{visit}_task-{label_of(content.head['protocol'])}"
+    made = {home / name: data for name, data in _files(content, stem, anonymous).items()}
+    maker = {"Name": "vbraille", "Version": version("vbraille")}
     whole = {
-        DATASET: _json(about),
+        DATASET: _json(ABOUT | {"GeneratedBy": [maker]}),
         README: README_TEXT.encode(),
         "participants.json": _json({PSEUDONYM: {"Description": "as the laboratory has it"}}),
     }
-    files |= {folder / name: made for name, made in whole.items() if not (folder / name).exists()}
-    people |= {label: who}
+    made |= {folder / name: data for name, data in whole.items() if not (folder / name).exists()}
+    people[label] = who
     table = [{"participant_id": f"sub-{of}", PSEUDONYM: name} for of, name in people.items()]
     try:
         home.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{home} cannot be made: {error.strerror}") from None
-    write_files(files.items())
-    write_files([(folder / PEOPLE, to_csv(table, "\t", "n/a").encode())], replace=True)
-    return [*files, folder / PEOPLE]
+    write_files(made.items())
+    write_file(folder / PEOPLE, _tsv(table), replace=True)
+    return [*made, folder / PEOPLE]
 
 
 def _read_people(folder: Path) -> dict[str, str]:
@@ -113,7 +109,7 @@ def _read_people(folder: Path) -> dict[str, str]:
     path = folder / PEOPLE
     if not path.exists():
         return {}
-    sheet = parse_csv(path.read_bytes(), str(path))
+    sheet = read_csv(path)
     if sheet.columns != ("participant_id", PSEUDONYM):
         raise InputError(f"{path} has other columns; give another directory, and join the tables")
     return {label.removeprefix("sub-"): who for label, who in sheet.rows}
@@ -128,30 +124,36 @@ def _files(content: Content, stem: str, anonymous: bool) -> dict[str, bytes]:
         "TaskDescription": f"{protocol.title} ({protocol.source})",
     }
     made = {
-        f"{stem}_beh.tsv": to_csv(table, "\t", "n/a").encode(),
+        f"{stem}_beh.tsv": _tsv(table),
         f"{stem}_beh.json": _json(described | _told(codebook(table[0], protocol))),
     }
-    starts = [event.n for event in content.events if event.kind == "run"]
+    runs = [event for event in content.events if event.kind == "run"]
+    ends = [*(run.n for run in runs[1:]), content.events[-1].n + 1]
     with reading(content.path) as db:
-        for number, (first, end) in enumerate(pairwise([*starts, content.events[-1].n + 1]), 1):
-            events = [event for event in content.events if first <= event.n < end]
+        for number, (run, end) in enumerate(zip(runs, ends, strict=True), 1):
             name = f"{stem}_run-{number:02}"
-            ticks = read_all(db, first - 1, end)
-            made[f"{name}_events.tsv"] = _events(events, ticks, anonymous)
-            made[f"{name}_events.json"] = _json(_told(EVENTS))
+            made[f"{name}_events.tsv"] = _events(content.events[run.n - 1 : end - 1], anonymous)
+            made[f"{name}_events.json"] = _json(_told(COLUMNS_OF["events"]))
+            ticks = read_all(db, run.n - 1, end)
             if ticks.size:
-                conditions = events[0].data.get("conditions", {})
-                rate_hz = conditions.get("rate_hz", 1000.0)
-                sampled = {"SamplingFrequency": rate_hz, "StartTime": 0.0}
-                sampled |= {"Columns": list(RECORDED)} | _told(RECORDED)
+                columns = COLUMNS_OF["recording"]
                 name += "_recording-carriage_physio"
                 made[f"{name}.tsv.gz"] = _recording(ticks)
-                made[f"{name}.json"] = _json(sampled)
+                sampled = {
+                    "SamplingFrequency": run.data["conditions"]["rate_hz"],
+                    "StartTime": float(ticks["time_ns"][0]) / 1e9 - run.data["clock_s"],
+                    "Columns": list(columns),
+                }
+                made[f"{name}.json"] = _json(sampled | _told(columns))
     return made
 
 
 def _json(content: dict[str, Any]) -> bytes:
     return (json.dumps(content, ensure_ascii=False, indent=2) + "\n").encode()
+
+
+def _tsv(table: list[dict[str, Any]]) -> bytes:
+    return to_csv(table, "\t", "n/a").encode()
 
 
 def _told(columns: dict[str, Column]) -> dict[str, dict[str, Any]]:
@@ -164,21 +166,15 @@ def _told(columns: dict[str, Column]) -> dict[str, dict[str, Any]]:
     return found
 
 
-def _events(events: list[Event], ticks: NDArray[np.void], anonymous: bool) -> bytes:
-    """Return the events of a run, whose times count from its first tick."""
-    began_s = events[0].t_s
-    for event in events:
-        at = np.flatnonzero(ticks["tick"] == event.data.get("tick", -1)) if ticks.size else ticks
-        if at.size:
-            began_s = event.t_s - float(ticks["time_ns"][at[0]] - ticks["time_ns"][0]) / 1e9
-            break
+def _events(events: Sequence[Event], anonymous: bool) -> bytes:
+    """Return the events of a run, by their times from its beginning."""
     table = []
-    for event in events[1:]:
+    for event in sorted(events, key=lambda event: event.t_s):
         said = [str(event.data[name]) for name in SAID if event.data.get(name) not in (None, "")]
         hidden = anonymous and any(name in event.data for name in WORDS)
         table.append(
             {
-                "onset": round(event.t_s - began_s, 6),
+                "onset": round(event.t_s - events[0].t_s, 6),
                 "duration": "",
                 "trial_type": event.kind,
                 "practice": int(bool(event.practice)),
@@ -186,8 +182,7 @@ def _events(events: list[Event], ticks: NDArray[np.void], anonymous: bool) -> by
                 "value": "" if hidden else "; ".join(said),
             }
         )
-    table.sort(key=lambda row: row["onset"])
-    return to_csv(table or [dict.fromkeys(EVENTS, "")], "\t", "n/a").encode()
+    return _tsv(table)
 
 
 def _recording(ticks: NDArray[np.void]) -> bytes:

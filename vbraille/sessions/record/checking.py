@@ -15,6 +15,7 @@ from vbraille.sessions.record.record import (
     START,
     RecordError,
     connect,
+    insert,
     plan_sum,
     reading,
     sum_of_row,
@@ -98,9 +99,8 @@ def salvage(path: Path, into: Path) -> list[str]:
         new.executescript(SCHEMA)
         for table, found in rows.items():
             for row in found:
-                marks = ", ".join("?" * len(row))
                 with suppress(sqlite3.Error):
-                    new.execute(f"INSERT INTO {table} VALUES ({marks})", row)
+                    insert(new, table, row)
             count = new.execute(f"SELECT count(*) FROM {table}").fetchone()[0]
             said.append(f"{table}: {count} rows saved")
     return said + [f"not whole: {fault}" for fault in check(into)]

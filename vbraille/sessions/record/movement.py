@@ -62,43 +62,27 @@ def pauses(ticks: NDArray[np.void], edge_mm: float, span_mm: float, back_mm: flo
         return [0, 0.0, 0]
     furthest = on[0] + int(np.nanargmax(ticks["x_mm"][on[0] :]))
     within = ticks[on[0] : furthest + 1]
-    still = stretches(np.abs(within["vx_mm_s"]) < STILL_MM_S, within["time_ns"])
-    long = still[still >= STILL_S]
+    still = np.abs(within["vx_mm_s"]) < STILL_MM_S
+    edges = np.flatnonzero(np.diff(still, prepend=False, append=False))
+    stood_s = (within["time_ns"][edges[1::2] - 1] - within["time_ns"][edges[::2]]) / 1e9
+    long = stood_s[stood_s >= STILL_S]
     back = (len(turning_points(within["x_mm"], back_mm)) - 1) // 2
     return [int(long.size), float(long.sum()), back]
 
 
-def stretches(marked: NDArray[np.bool_], time_ns: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return the lengths in s of the stretches of ticks that are marked.
-
-    >>> stretches(np.array([0, 1, 1, 0, 1], bool), np.arange(5) * 10**9)
-    array([1., 0.])
-    """
-    edges = np.diff(np.concatenate(([False], marked, [False])).astype(np.int8))
-    starts, stops = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
-    return (time_ns[stops] - time_ns[starts]) / 1e9
-
-
 def turning_points(x_mm: NDArray[np.float64], least_mm: float = REVERSAL_MM) -> list[int]:
     """Return the ticks at which a way turns back by a length or more, with its two ends."""
-    steps = np.sign(np.diff(x_mm))
-    moves = np.flatnonzero(steps)
-    turned = moves[1:][steps[moves[1:]] != steps[moves[:-1]]]
+    moves = np.flatnonzero(np.diff(x_mm))
+    turned = moves[1:][np.diff(np.sign(np.diff(x_mm)[moves])) != 0]
     turns: list[int] = []
-    furthest = 0
+    furthest, way = 0, 0.0
     for tick in [*turned.tolist(), len(x_mm) - 1]:
-        if not turns:
-            if abs(x_mm[tick] - x_mm[furthest]) >= least_mm:
-                turns.append(furthest)
-                furthest = tick
-            continue
-        way = x_mm[furthest] - x_mm[turns[-1]]
         gone = x_mm[tick] - x_mm[furthest]
         if way * gone > 0:
             furthest = tick
         elif abs(gone) >= least_mm:
             turns.append(furthest)
-            furthest = tick
+            furthest, way = tick, gone
     return [*turns, furthest] if turns else []
 
 

@@ -6,12 +6,11 @@ SHA-256 of itself and of the one before, so that the last one stands for the who
 
 from __future__ import annotations
 
-import csv
 import json
 import os
 import sqlite3
-from collections.abc import Iterator
-from contextlib import closing, contextmanager, suppress
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
 from datetime import UTC, datetime
 from hashlib import sha256
 from pathlib import Path
@@ -22,52 +21,15 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
+from vbraille.csvfiles import read_csv
 from vbraille.errors import InputError, VbrailleError
+from vbraille.files import sync_names, whole_file
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.record.ticks import pack
 
 FORMAT = 1
-SCHEMA = """
-CREATE TABLE session (          -- one row: who, what, and all that does not change
-    id INTEGER PRIMARY KEY CHECK (id = 1), format INTEGER NOT NULL, participant TEXT NOT NULL,
-    protocol TEXT NOT NULL, seed INTEGER NOT NULL, head TEXT NOT NULL CHECK (json_valid(head))
-) STRICT;
-CREATE TABLE file (             -- the protocol and what stands beside it, byte for byte
-    name TEXT PRIMARY KEY, content BLOB NOT NULL
-) STRICT;
-CREATE TABLE trial (            -- the plan
-    practice INTEGER NOT NULL, number INTEGER NOT NULL, block INTEGER NOT NULL,
-    condition TEXT NOT NULL, item TEXT NOT NULL, gap_s REAL NOT NULL, catch TEXT NOT NULL,
-    columns TEXT NOT NULL CHECK (json_valid(columns)),
-    stimuli TEXT NOT NULL CHECK (json_valid(stimuli)), PRIMARY KEY (practice, number)
-) STRICT;
-CREATE TABLE event (            -- what happened, in order
-    n INTEGER PRIMARY KEY, kind TEXT NOT NULL, t_s REAL NOT NULL, wall TEXT NOT NULL,
-    practice INTEGER, trial INTEGER, attempt INTEGER,
-    data TEXT NOT NULL CHECK (json_valid(data)), sum BLOB NOT NULL
-) STRICT;
-CREATE TABLE ticks (            -- a second or less of the device's ticks; see `read_ticks`
-    after INTEGER NOT NULL REFERENCES event (n), first INTEGER NOT NULL, count INTEGER NOT NULL,
-    first_line INTEGER NOT NULL, last_line INTEGER NOT NULL, fields BLOB NOT NULL,
-    sum BLOB NOT NULL, PRIMARY KEY (after, first)
-) STRICT;
-CREATE TABLE seal (             -- the newest sum when a console closed the file last
-    id INTEGER PRIMARY KEY CHECK (id = 1), sum BLOB NOT NULL
-) STRICT;
-CREATE INDEX ticks_of_line ON ticks (first_line);
-CREATE INDEX event_of_trial ON event (trial, practice, kind);
-CREATE TRIGGER events_do_not_change BEFORE UPDATE ON event
-    BEGIN SELECT RAISE(ABORT, 'events do not change'); END;
-CREATE TRIGGER events_do_not_go BEFORE DELETE ON event
-    BEGIN SELECT RAISE(ABORT, 'events do not go'); END;
-CREATE VIEW answers AS          -- the answer of each trial that counts
-    SELECT t.practice, t.number AS trial, t.block, t.condition, t.catch, t.item, e.attempt,
-        json_extract(e.data, '$.answer') AS answer, e.t_s, e.wall
-    FROM trial t LEFT JOIN event e ON e.kind = 'answer' AND e.n = (
-        SELECT max(n) FROM event
-        WHERE trial = t.number AND practice = t.practice AND kind IN ('answer', 'undo', 'missed'));
-"""
+SCHEMA = Path(__file__).with_name("schema.sql").read_text("utf-8")
 
 
 class Kind(NamedTuple):
@@ -78,11 +40,10 @@ class Kind(NamedTuple):
     meaning: str
 
 
-with Path(__file__).with_name("events.csv").open(encoding="utf-8", newline="") as _file:
-    KINDS = {
-        kind: Kind(int(byte), moment, meaning)
-        for kind, byte, moment, meaning in list(csv.reader(_file))[1:]
-    }
+KINDS = {
+    kind: Kind(int(byte), moment, meaning)
+    for kind, byte, moment, meaning in read_csv(Path(__file__).with_name("events.csv")).rows
+}
 TICKS_A_BLOB = 1000
 LAST = """
     SELECT event.n, ifnull(ticks.sum, event.sum) FROM event LEFT JOIN ticks ON after = n
@@ -148,31 +109,26 @@ def create(path: Path, head: dict[str, Any], files: dict[str, bytes], plan: Plan
     RecordError
         If there is such a file, or it cannot be written.
     """
-    partial = path.with_name(f".{path.name}.new")
+    if path.exists():
+        raise NoRecordError(f"{path} is there already; choose another name")
     try:
-        partial.unlink(missing_ok=True)  # of a console that was killed
-        with told(path), closing(connect(partial, "rwc")) as db:
-            partial.chmod(0o600)
-            db.execute("PRAGMA synchronous = EXTRA")
-            db.executescript(f"BEGIN; {SCHEMA}")
-            row = (FORMAT, plan.participant, head["protocol"], plan.seed, json.dumps(head))
-            db.execute("INSERT INTO session VALUES (1, ?, ?, ?, ?, ?)", row)
-            db.executemany("INSERT INTO file VALUES (?, ?)", files.items())
-            rows = map(_trial_row, plan.trials)
-            db.executemany("INSERT INTO trial VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", rows)
-            _insert(db, _event(1, "session", 0.0, None, None, {"plan": plan_sum(db)}), START)
-            db.execute("COMMIT")
-        os.link(partial, path)
-        folder = os.open(path.parent, os.O_RDONLY)
-        os.fsync(folder)
-        os.close(folder)
-    except FileExistsError:
-        raise NoRecordError(f"{path} is there already; choose another name") from None
+        with whole_file(path) as partial:
+            partial.unlink(missing_ok=True)  # of a console that was killed
+            with told(path), closing(connect(partial, "rwc")) as db:
+                partial.chmod(0o600)
+                db.execute("PRAGMA synchronous = EXTRA")
+                db.executescript(f"BEGIN; {SCHEMA}")
+                row = (1, FORMAT, plan.participant, head["protocol"], plan.seed, json.dumps(head))
+                insert(db, "session", row)
+                for named in files.items():
+                    insert(db, "file", named)
+                for trial in plan.trials:
+                    insert(db, "trial", _trial_row(trial))
+                _insert_event(db, _event(1, "session", 0.0, None, None, plan=plan_sum(db)), START)
+                db.execute("COMMIT")
+        sync_names(path.parent)
     except OSError as error:
         raise RecordError(f"{path}: {error.strerror}") from None
-    finally:
-        with suppress(OSError):
-            partial.unlink(missing_ok=True)
 
 
 class Record:
@@ -200,10 +156,10 @@ class Record:
     ) -> Event:
         """Add an event, and return it; it is on the disk then, an answer with its ticks."""
         assert kind in KINDS, kind
-        event = _event(self._n + 1, kind, t_s, trial, attempt, data)
+        event = _event(self._n + 1, kind, t_s, trial, attempt, **data)
         with self._transaction():
             before = self._insert_ticks() if kind == "answer" else self.sum
-            sum_ = _insert(self._db, event, before)
+            sum_ = _insert_event(self._db, event, before)
         self._waiting = [] if kind == "answer" else self._waiting
         self._n, self.sum = event.n, sum_
         return event
@@ -229,8 +185,8 @@ class Record:
         sum_ = sha256(self.sum + fields).digest()
         shown = ticks["line"][ticks["line"] > 0]  # before its first showing a run has line 0
         lines = (int(shown.min()), int(shown.max())) if shown.size else (0, 0)
-        row = (self._n, int(ticks["tick"][0]), ticks.size, *lines, fields, sum_)
-        self._db.execute("INSERT INTO ticks VALUES (?, ?, ?, ?, ?, ?, ?)", row)
+        first = int(ticks["tick"][0])
+        insert(self._db, "ticks", (self._n, first, ticks.size, *lines, fields, sum_))
         return sum_
 
     def close(self) -> None:
@@ -314,8 +270,8 @@ def _read(path: Path, db: sqlite3.Connection) -> Content:
     head = json.loads(head)
     trials = []
     for row in db.execute("SELECT * FROM trial ORDER BY practice DESC, number"):
-        fields = dict(zip(TRIAL, row, strict=True))
-        fields |= {name: json.loads(fields[name]) for name in ("columns", "stimuli")}
+        values = (*row[:-2], *map(json.loads, row[-2:]))
+        fields = dict(zip(TRIAL, values, strict=True))
         trials.append(msgspec.convert(fields, Trial, strict=False))
     query = "SELECT n, kind, t_s, wall, practice, trial, attempt, data FROM event ORDER BY n"
     rows = db.execute(query)
@@ -325,14 +281,13 @@ def _read(path: Path, db: sqlite3.Connection) -> Content:
     return Content(path, head, files, plan, events)
 
 
-def _trial_row(trial: Trial) -> tuple[Any, ...]:
-    values = (getattr(trial, name) for name in TRIAL)
-    coded = (str, int, float)
-    return tuple(v if isinstance(v, coded) else msgspec.json.encode(v).decode() for v in values)
+def _trial_row(trial: Trial) -> list[Any]:
+    row = [getattr(trial, name) for name in TRIAL]
+    return [*row[:-2], *(msgspec.json.encode(value).decode() for value in row[-2:])]
 
 
 def _event(
-    n: int, kind: str, t_s: float, trial: Trial | None, attempt: int | None, data: dict[str, Any]
+    n: int, kind: str, t_s: float, trial: Trial | None, attempt: int | None, **data: Any
 ) -> Event:
     wall = f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%S.%fZ}"
     where = (None, None, None) if trial is None else (int(trial.practice), trial.number, attempt)
@@ -340,11 +295,16 @@ def _event(
     return Event(n, kind, float(round(t_s, 6)), wall, *where, data)
 
 
-def _insert(db: sqlite3.Connection, event: Event, before: bytes) -> bytes:
+def insert(db: sqlite3.Connection, table: str, row: Sequence[Any]) -> None:
+    """Insert a row into a table."""
+    db.execute(f"INSERT INTO {table} VALUES ({', '.join('?' * len(row))})", row)
+
+
+def _insert_event(db: sqlite3.Connection, event: Event, before: bytes) -> bytes:
     """Insert an event, and return its sum."""
     row = [*msgspec.structs.astuple(event)[:-1], json.dumps(event.data, ensure_ascii=False)]
     sum_ = sum_of_row(row, before)
-    db.execute("INSERT INTO event VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", (*row, sum_))
+    insert(db, "event", (*row, sum_))
     return sum_
 
 

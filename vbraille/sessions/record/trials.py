@@ -5,10 +5,11 @@ from __future__ import annotations
 import csv
 import io
 import sqlite3
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from operator import attrgetter
 from pathlib import Path
+from statistics import fmean
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -74,9 +75,14 @@ def protocol_of(content: Content) -> Protocol:
     return protocol.of_group(content.plan.group)
 
 
-def to_csv(table: Sequence[dict[str, Any]], separator: str = ",", nothing: str = "") -> str:
-    """Return rows as CSV, with all columns that any of them has."""
-    columns = list(dict.fromkeys(name for row in table for name in row)) or list(COLUMNS)
+def to_csv(
+    table: Sequence[dict[str, Any]],
+    separator: str = ",",
+    nothing: str = "",
+    columns: Iterable[str] = COLUMNS,
+) -> str:
+    """Return rows as CSV, with all columns that any of them has; some columns, if there is none."""
+    columns = list(dict.fromkeys(name for row in table for name in row) or columns)
     text = io.StringIO()
     writer = csv.writer(text, delimiter=separator, lineterminator="\n")
     writer.writerow(columns)
@@ -279,14 +285,12 @@ def best_level(path: Path, parameter: str) -> float:
     ValueError
         If the session has no answers that tell.
     """
-    right: Counter[float] = Counter()
-    total: Counter[float] = Counter()
+    right: defaultdict[float, list[bool]] = defaultdict(list)
     for row in rows(path):
         if row["analysed"] and row["question"] == "identify":
             presented, answered = row["presented"], row["answered"]
             pairs = zip(presented, answered.ljust(len(presented), UNREAD), strict=False)
-            right[row[parameter]] += sum(one == other for one, other in pairs)
-            total[row[parameter]] += len(presented)
-    if not total:
+            right[row[parameter]] += [one == other for one, other in pairs]
+    if not right:
         raise ValueError(f"{path} has no answers that tell which {parameter} is read best")
-    return max(sorted(total), key=lambda value: right[value] / total[value])
+    return max(sorted(right), key=lambda value: fmean(right[value]))

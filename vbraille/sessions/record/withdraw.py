@@ -6,19 +6,18 @@ can be made again, is removed, since its numbers are made of all.
 
 from __future__ import annotations
 
-import csv
-import io
 import re
 import shutil
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from vbraille.csvfiles import parse_csv
+from vbraille.csvfiles import read_csv
 from vbraille.errors import InputError, VbrailleError
 from vbraille.files import write_file
-from vbraille.sessions.record.bids import DATASET, PEOPLE, PSEUDONYM
+from vbraille.sessions.record.bids import PEOPLE, PSEUDONYM, label_of
 from vbraille.sessions.record.record import Record, participant_of
+from vbraille.sessions.record.trials import to_csv
 
 TABLES = {".csv": ",", ".tsv": "\t"}
 TEXTS = (*TABLES, ".json", ".txt", ".md", ".html", ".svg", ".toml", ".brf")
@@ -72,8 +71,8 @@ class Withdrawal:
             for path in self.whole:
                 shutil.rmtree(path) if path.is_dir() else path.unlink()
             for path in sorted(self.rows, key=lambda path: path.name == PEOPLE):
-                mode = path.stat().st_mode
-                write_file(path, _without(path, self.participant), replace=True, durable=True)
+                mode, (_, others) = path.stat().st_mode, _without(path, self.participant)
+                write_file(path, others, replace=True, durable=True)
                 path.chmod(mode)
         except OSError as error:
             said = f"{error.filename} could not be removed: {error.strerror}"
@@ -101,40 +100,30 @@ def withdrawal(folders: Iterable[Path], participant: str) -> Withdrawal:
 
 def _look_at(path: Path, found: Withdrawal, word: re.Pattern[str]) -> None:
     """Note what a file has of the person."""
+    if path.suffix == ".session" and participant_of(path) == found.participant:
+        found.whole[path] = "a session"
+    if path.suffix not in TEXTS or path.stat().st_size > MOST_BYTES:
+        return
+    if not word.search(path.read_text("utf-8", "replace")):
+        return
     report = next((folder for folder in path.parents if (folder / REPORT).exists()), None)
-    if path.suffix == ".session":
-        if participant_of(path) == found.participant:
-            found.whole[path] = "a session"
-    elif path.suffix not in TEXTS or path.stat().st_size > MOST_BYTES:
-        return
-    elif path.name == PEOPLE and (path.parent / DATASET).exists():
-        for label, *_ in _rows(path, found.participant)[0]:
-            found.whole[path.parent / label] = "a person of a dataset"
-            found.rows[path] = 1
-    elif not word.search(path.read_text("utf-8", "replace")):
-        return
-    elif report is not None:
+    if report is not None:
         found.whole[report] = "a report, which can be made again without the person"
-    elif path.suffix in TABLES and (own := _rows(path, found.participant)[0]):
-        found.rows[path] = len(own)
+    elif path.suffix in TABLES and (count := _without(path, found.participant)[0]):
+        found.rows[path] = count
+        if path.name == PEOPLE:
+            home = path.parent / f"sub-{label_of(found.participant)}"
+            found.whole[home] = "a person of a dataset"
     else:
         found.left.append(path)
 
 
-def _rows(path: Path, participant: str) -> tuple[list[list[str]], list[list[str]]]:
-    """Return the rows of a table that are a person's, and its header with all others."""
+def _without(path: Path, participant: str) -> tuple[int, bytes]:
+    """Return how many rows of a table are a person's, and the table without them."""
     try:
-        sheet = parse_csv(path.read_bytes(), str(path))
+        sheet = read_csv(path)
     except InputError:
-        return [], []
-    columns = [n for n, name in enumerate(sheet.columns) if name in PERSON][:1]
-    own = [row for row in sheet.rows if any(row[n] == participant for n in columns)]
-    return own, [list(sheet.columns), *(row for row in sheet.rows if row not in own)]
-
-
-def _without(path: Path, participant: str) -> bytes:
-    """Return a table without a person's rows."""
-    text = io.StringIO()
-    writer = csv.writer(text, delimiter=TABLES[path.suffix], lineterminator="\n")
-    writer.writerows(_rows(path, participant)[1])
-    return text.getvalue().encode()
+        return 0, b""
+    others = [row for row in sheet.records() if participant not in map(row.get, PERSON)]
+    text = to_csv(others, TABLES[path.suffix], columns=sheet.columns)
+    return len(sheet.rows) - len(others), text.encode()

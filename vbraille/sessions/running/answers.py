@@ -13,7 +13,7 @@ from typing import Any, Literal, NamedTuple
 from vbraille.errors import InputError
 from vbraille.sessions.planning.questionnaire import Item
 from vbraille.sessions.planning.trial import Trial
-from vbraille.sessions.simulated.skin import FeltFrames
+from vbraille.sessions.simulated.observer import FeltFrames
 
 
 class Asked(NamedTuple):
@@ -49,10 +49,6 @@ class Line(NamedTuple):
     number: int = 0
 
 
-class Press(NamedTuple):
-    """The participant's key, where a line might have come."""
-
-
 class NoMoreAnswers(Exception):
     """There will be no more answers; the session stops, and can be resumed."""
 
@@ -68,14 +64,12 @@ class Answers:
         Whether a person types, who is waited for at breaks and gives commands at any time.
     felt : bool
         Whether it needs what was felt.
-    awaits_key : bool
-        Whether the participant's key would end reading now.
     """
 
     name = "program"
-    typed = felt = awaits_key = False
+    typed = felt = False
 
-    def line(self, asked: Asked | None, wait_s: float) -> Line | Press | None:
+    def line(self, asked: Asked | None, wait_s: float) -> Line | None:
         """Return a line, or None if there is none within some time.
 
         A person's line may come at any time, others only if something is asked.
@@ -94,10 +88,6 @@ class Answers:
         """Return the line for what is asked."""
         raise NotImplementedError
 
-    def watch(self, key: str) -> bool:
-        """Look out for the participant's key; return whether that is possible."""
-        return False
-
     def take(self) -> None:
         """Take the terminal."""
 
@@ -114,10 +104,10 @@ class Typed(Answers):
     def __init__(self) -> None:
         self._descriptor = sys.stdin.fileno() if sys.stdin else -1
         self._partial = b""
-        self._given: list[Line | Press] = []
+        self._given: list[Line] = []
         self._over = self._descriptor < 0
 
-    def line(self, asked: Asked | None, wait_s: float) -> Line | Press | None:
+    def line(self, asked: Asked | None, wait_s: float) -> Line | None:
         """Return a line that was typed."""
         if not self._given and not self._over:
             self._read(wait_s)

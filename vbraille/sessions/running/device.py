@@ -8,6 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, replace
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -18,16 +19,18 @@ from vbraille.devices.events import Button, Knob, Placing
 from vbraille.devices.registry import TRAVEL_TOLERANCE_MM, find_driver, open_device
 from vbraille.display import Display
 from vbraille.engine.batch import BatchEngine
-from vbraille.engine.engine import AWAY, placing_of
+from vbraille.engine.engine import placing_of
 from vbraille.engine.host import Host
 from vbraille.engine.record import Flag, RingReader
 from vbraille.errors import InputError
-from vbraille.sessions.planning.plan import Plan
-from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import Shown, make_shown, width_mm
 from vbraille.sessions.planning.trial import Stimulus
+from vbraille.sessions.record.progress import Progress
+from vbraille.sessions.running.answers import Answers
+from vbraille.sessions.running.conditions import Conditions
 from vbraille.sessions.running.presenter import Happening, Presenter
-from vbraille.sessions.simulated.skin import FeltFrames
+from vbraille.sessions.running.reader import random_of
+from vbraille.sessions.simulated.observer import FeltFrames
 from vbraille.simulation import steering
 from vbraille.simulation.specs import device_spec, is_simulated
 from vbraille.wording import setting
@@ -43,68 +46,48 @@ class SessionDevice(Presenter):
 
     Parameters
     ----------
-    protocol
-        What is shown.
-    spec, hand
-        Spec of the device, and of the hand that moves a simulated one.
-    seed
-        Seed of the simulated hand.
-    fast
-        Whether a simulated device runs as fast as the machine can, and not in real time.
-    rate_hz
-        Frames per second.
-    line
-        Number of the last showing in earlier runs.
-    keeps
-        Whether frames are kept for a simulated reader.
-    by_hand
-        Whether the hand's way to the end and back ends reading, and not a key alone.
+    progress, conditions
+        How far the session has come, with what it shows; and the conditions of the run.
+    answers
+        Source of the answers, for which frames may have to be kept. Where a person types, a key of
+        the protocol ends reading, if it has one, and not the hand's way to the end and back.
     watched
         Function that is given a reader of the ticks at each start, for a live view, whose pages may
         be the hand of a simulated device.
-
-    Attributes
-    ----------
-    newest : record or None
-        The newest tick.
     """
 
     by_key = False
 
     def __init__(
         self,
-        protocol: Protocol,
-        spec: str,
-        hand: str,
-        *,
-        seed: int,
-        fast: bool,
-        rate_hz: float,
-        line: int,
-        keeps: bool,
-        by_hand: bool,
+        progress: Progress,
+        conditions: Conditions,
+        answers: Answers,
         watched: Callable[[RingReader], None] | None,
     ) -> None:
         super().__init__()
-        wanted = replace(protocol.wanted, rate_hz=rate_hz)
-        self.line = line
-        self.newest: np.void | None = None
-        self._protocol, self._span_mm = protocol, wanted.span_mm
-        self._real, self._keeps, self._by_hand = not fast, keeps, by_hand
+        self._protocol, self._plan = protocol, plan = progress.protocol, progress.plan
+        self.line = progress.line
+        self._wanted = replace(protocol.wanted, rate_hz=conditions.rate_hz)
+        self._real, self._keeps = not conditions.fast, answers.felt
+        self._by_hand = not answers.typed or protocol.trial.end is None
         self._watched = watched
-        self._is_simulated = is_simulated(spec)
-        spec = device_spec(spec, hand, seed)
+        self._is_simulated = is_simulated(conditions.device)
+        # The simulated hand differs between participants and runs.
+        drawn = f"{protocol.name} {plan.participant} {plan.seed} hand {progress.runs}"
+        seed = int(random_of(drawn).integers(2**63))
+        spec = device_spec(conditions.device, conditions.hand, seed)
         self.engine: BatchEngine | Host
-        if fast:
-            self.engine = BatchEngine(open_device(spec, wanted), rate_hz)
+        if conditions.fast:
+            self.engine = BatchEngine(open_device(spec, self._wanted), conditions.rate_hz)
         else:
             find_driver(spec)
-            self.engine = Host(spec, wanted)
+            self.engine = Host(spec, self._wanted)
         self._felt: list[list[NDArray[np.void]]] = []
         self._under: Shown | None = None  # the hand
-        self._first_line = line + 1
+        self._first_line = self.line + 1
         self._shown_s = self._told_s = 0.0
-        self._is_ready = self._touched = self._at_end = self._is_away = False
+        self._touched = self._at_end = self._is_away = False
         self._placing = Placing.DONE
         self._controls: list[Button | Knob] = []
 
@@ -127,12 +110,13 @@ class SessionDevice(Presenter):
         """Time of the session's clock: the machine's, or that of a device that runs fast."""
         if self._real:
             return time.monotonic()
-        return 0.0 if self.newest is None else int(self.newest["time_ns"]) / 1e9
+        newest = self.engine.newest
+        return 0.0 if newest is None else int(newest["time_ns"]) / 1e9
 
     @property
     def ready(self) -> bool:
         """True if the device works, and the array is at the left."""
-        return self._is_ready
+        return self.engine.ready
 
     @property
     def reached(self) -> bool:
@@ -141,10 +125,17 @@ class SessionDevice(Presenter):
         return self.read or no_end or self._at_end
 
     def start(self) -> None:
-        """Open the device; again after the engine died."""
+        """Open the device; again after the engine died.
+
+        Raises
+        ------
+        InputError
+            If its carriage is too short for what is shown, or goes along a line where pictures are.
+        """
         self.engine.start()
         self.engine.paused = True
-        self.newest = self._under = None
+        self._under = None
+        self._check_room()
         if self._watched is not None and isinstance(self.engine, Host):
             self._watched(self.engine.reader())
 
@@ -230,16 +221,28 @@ class SessionDevice(Presenter):
             Happening("device", self.now_s, {"what": sentence}, sentence)
             for sentence in (*events.told(given), *self._say_place(ticks))
         ]
-        if ticks.size:
-            self.newest = ticks[-1]
-            anywhere = self._under is not None and self._under.canvas_mm is not None
-            works = not int(ticks["flags"][-1]) & AWAY
-            self._is_ready = works if anywhere else self.engine.ready
-            if self._under is not None:
-                found += self._follow(ticks, self._under)
+        if ticks.size and self._under is not None:
+            found += self._follow(ticks, self._under)
         for event in given:
             found += self._heard(event)
         return ticks, sorted(found, key=lambda each: each.time_s)
+
+    def _check_room(self) -> None:
+        protocol, display = self._protocol, self.display
+        stimuli = {s for trial in self._plan.trials for s in trial.stimuli if s.on == "device"}
+        if protocol.shows_pictures and not display.height_mm:
+            raise InputError(
+                f"{protocol.name} shows pictures, and the carriage of {display.name} goes along x "
+                f"only; choose another {setting('device')}"
+            )
+        spans_mm = (0.0 if stimulus.picture else display.span_mm for stimulus in stimuli)
+        widths_mm = (width_mm(protocol, stimulus) for stimulus in stimuli)
+        needed_mm = max(map(add, widths_mm, spans_mm), default=0.0)
+        if needed_mm > display.travel_mm + TRAVEL_TOLERANCE_MM:
+            raise InputError(
+                f"the carriage of {display.name} travels {display.travel_mm:g} mm, and "
+                f"{protocol.name} needs {needed_mm:.1f} mm; choose another {setting('device')}"
+            )
 
     def _say_place(self, ticks: NDArray[np.void]) -> Iterable[str]:
         """Say what is to be done before the device knows its place."""
@@ -259,7 +262,7 @@ class SessionDevice(Presenter):
             self._at_end = self._at_end or bool((ticks["x_mm"] >= shown.end_mm).any())
         if self._touched or not shown.edges_mm:
             return []
-        on = np.flatnonzero(ticks["x_mm"] + self._span_mm / 2 >= shown.edges_mm[0])
+        on = np.flatnonzero(ticks["x_mm"] + self._wanted.span_mm / 2 >= shown.edges_mm[0])
         self._touched = bool(on.size)
         if not on.size:
             return []
@@ -302,30 +305,6 @@ class SessionDevice(Presenter):
     def _may_read(self) -> bool:
         """Tell whether the hand's way to the end and back ends reading now."""
         return self._by_hand and not self.read
-
-
-def check_room(protocol: Protocol, plan: Plan, display: Display) -> None:
-    """Check that the carriage is long enough for all that a plan shows.
-
-    Raises
-    ------
-    InputError
-        If it is too short, or goes along a line where pictures are shown.
-    """
-    stimuli = {s for trial in plan.trials for s in trial.stimuli if s.on == "device"}
-    if not display.height_mm and any(stimulus.picture for stimulus in stimuli):
-        raise InputError(
-            f"{protocol.name} shows pictures, and the carriage of {display.name} goes along x "
-            f"only; choose another {setting('device')}"
-        )
-    spans_mm = [0.0 if stimulus.picture else display.span_mm for stimulus in stimuli]
-    widths_mm = [width_mm(protocol, stimulus) for stimulus in stimuli]
-    needed_mm = max(map(sum, zip(widths_mm, spans_mm, strict=True)), default=0.0)
-    if needed_mm > display.travel_mm + TRAVEL_TOLERANCE_MM:
-        raise InputError(
-            f"the carriage of {display.name} travels {display.travel_mm:g} mm, and "
-            f"{protocol.name} needs {needed_mm:.1f} mm; choose another {setting('device')}"
-        )
 
 
 def _at(kind: str, tick: int, time_ns: int, **data: Any) -> Happening:

@@ -25,7 +25,6 @@ from vbraille.live.view import LiveView
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.trial import Stimulus
 from vbraille.sessions.running.device import SessionDevice
-from vbraille.sessions.running.runner import Runner
 from vbraille.simulation import steering
 from vbraille.wording import setting
 
@@ -115,8 +114,14 @@ class SessionView:
         if self._view is not None:
             self._view.watch(ticks)
 
-    def look(self, runner: Runner) -> None:
-        """Tell the pages what has changed, and lead the simulated hand as they ask."""
+    def look(self, runner: Any) -> None:
+        """Tell the pages what has changed, and lead the simulated hand as they ask.
+
+        Parameters
+        ----------
+        runner
+            The `Runner` of the session, which stands above this module.
+        """
         if self._view is None:
             return
         device = runner.device
@@ -135,9 +140,9 @@ class SessionView:
             self._say("live view: ended by a fault; the session goes on")
             self.__exit__(None, None, None)
 
-    def _state(self, runner: Runner, device: SessionDevice) -> ViewState:
+    def _state(self, runner: Any, device: SessionDevice) -> ViewState:
         """Return what pages show."""
-        protocol, trial, newest = runner.protocol, runner.trial, device.newest
+        protocol, trial, newest = runner.protocol, runner.trial, device.engine.newest
         style, facts = protocol.style(protocol.display), []
         if trial is not None:
             facts.append(("trial", runner.name))

@@ -5,56 +5,60 @@ from __future__ import annotations
 from dataclasses import replace
 from hashlib import sha256
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
-from msgspec import structs
+from msgspec import Meta, Struct, ValidationError, convert, structs
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import edges_mm, make_shown
 from vbraille.sessions.planning.trial import Trial
+from vbraille.sessions.planning.values import Share
 from vbraille.sessions.running.answers import Answers, Asked, Line
 from vbraille.sessions.simulated.feeling import CELL_GAP, LENGTHS, DotPair, FeltTrial
 from vbraille.sessions.simulated.matching import differences, most_like
 from vbraille.sessions.simulated.observer import Observer
 
-MOST_NOISE = 100.0
 INSTEAD = "type the answers, or give a file of them"
 
 
-def parse_habits(text: str) -> dict[str, float]:
-    """Read what follows "simulated:", such as "0.4,lapses=0.05,false-alarms=0.1".
+class Habits(Struct, frozen=True, rename="kebab", forbid_unknown_fields=True):
+    """Habits of a simulated reader.
 
-    Returns
-    -------
-    dict
-        "noise": its standard deviation, in units of a perfect dot or of the nominal length.
-        "lapses": share of the trials that are answered by chance alone. "false-alarms": share of
-        the other trials that are answered "yes" or "different" whatever was felt.
+    Parameters
+    ----------
+    noise
+        Standard deviation of the noise, in units of a perfect dot or of the nominal length.
+    lapses
+        Share of the trials that are answered by chance alone.
+    false_alarms
+        Share of the other trials that are answered "yes" or "different" whatever was felt.
+    """
+
+    noise: Annotated[float, Meta(ge=0, le=100)] = 0.0
+    lapses: Share = 0.0
+    false_alarms: Share = 0.0
+
+
+def parse_habits(text: str) -> Habits:
+    """Read what follows "simulated:", such as "0.4,lapses=0.05,false-alarms=0.1".
 
     Raises
     ------
     InputError
         If it cannot be read, or is out of range.
     """
-    most = {"noise": MOST_NOISE, "lapses": 1.0, "false-alarms": 1.0}
-    found = dict.fromkeys(most, 0.0)
-    for part in filter(None, text.split(",")):
-        name, _, number = part.rpartition("=")
-        name = name or "noise"
-        try:
-            value = float(number)
-        except ValueError:
-            value = -1.0
-        if not 0 <= value <= most.get(name, -1.0):
-            raise InputError(
-                f"{part!r} is no habit of a simulated reader; give noise from 0 to "
-                f"{MOST_NOISE:g}, lapses and false-alarms from 0 to 1, such as "
-                f"simulated:0.2,lapses=0.05"
-            )
-        found[name] = value
-    return found
+    parts = (part.rpartition("=") for part in text.split(",") if part)
+    try:
+        given = {name or "noise": number for name, _, number in parts}
+        return convert(given, Habits, strict=False)
+    except ValidationError:
+        raise InputError(
+            f"{text!r} are no habits of a simulated reader; give noise from 0 to 100, lapses and "
+            "false-alarms from 0 to 1, such as simulated:0.2,lapses=0.05"
+        ) from None
 
 
 def simulated_answers(protocol: Protocol, plan: Plan, habits: str) -> Simulated:
@@ -72,7 +76,7 @@ def simulated_answers(protocol: Protocol, plan: Plan, habits: str) -> Simulated:
             f"{protocol.name} is read on {where}, which the simulated reader cannot feel; {INSTEAD}"
         )
     kind = SimulatedNaming if stimuli[0].picture else Simulated
-    return kind(protocol, plan, parse_habits(habits))
+    return kind(protocol, plan, habits)
 
 
 class Simulated(Answers):
@@ -87,7 +91,7 @@ class Simulated(Answers):
     protocol, plan
         What the reader was told, and what its noise is drawn by: name, participant and seed.
     habits
-        Noise, lapses and false alarms.
+        Noise, lapses and false alarms, as `parse_habits` reads them.
 
     Raises
     ------
@@ -97,14 +101,14 @@ class Simulated(Answers):
 
     felt = True
 
-    def __init__(self, protocol: Protocol, plan: Plan, habits: dict[str, float]) -> None:
-        self._habits, self._noise = habits, habits["noise"]
-        given = [f"{name}={share:g}" for name, share in habits.items() if share and name != "noise"]
-        self.name = ",".join([f"simulated:{self._noise:g}", *given])
+    def __init__(self, protocol: Protocol, plan: Plan, habits: str) -> None:
+        self._habits = parse_habits(habits)
+        self._noise = self._habits.noise
+        self.name = f"simulated:{habits or 0}"
         self._study, self._question = protocol, protocol.asks
         self._drawn = f"{protocol.name} {plan.participant} {plan.seed}"
         self._parameter = protocol.design.parameter
-        if habits["false-alarms"] and not self._question.alarm:
+        if self._habits.false_alarms and not self._question.alarm:
             raise InputError(
                 f"{protocol.name} asks {self._question.kind}, to which no answer is a false alarm; "
                 f"leave false-alarms out"
@@ -120,8 +124,8 @@ class Simulated(Answers):
         assert asked.trial is not None, "a trial is asked about"
         drawn = f"{self._drawn} {asked.trial.practice} {asked.trial.number} {asked.attempt}"
         habits = random_of(f"{drawn} habits")
-        lapsed = habits.random() < self._habits["lapses"]
-        alarmed = habits.random() < self._habits["false-alarms"]
+        lapsed = habits.random() < self._habits.lapses
+        alarmed = habits.random() < self._habits.false_alarms
         scale = self._question.confidence
         if asked.what == "confidence" and scale is not None:
             # After a crash between an answer and its confidence there is nothing left to think of.

@@ -7,8 +7,12 @@ and takes lines. A command that ends the trial raises `Again`, one that ends the
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
-from typing import Any, NamedTuple, TypeVar
+from contextlib import ExitStack, suppress
+from importlib.metadata import version
+from platform import python_version
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+from msgspec import structs
 
 from vbraille.braille.spelling import ordinal
 from vbraille.engine.host import HostDiedError
@@ -17,10 +21,16 @@ from vbraille.sessions.planning.questionnaire import Item
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Record
-from vbraille.sessions.running.answers import Answers, Asked, Line, NoMoreAnswers, Press
+from vbraille.sessions.running.answers import Answers, Asked, Line, NoMoreAnswers
+from vbraille.sessions.running.conditions import Conditions, open_sound
+from vbraille.sessions.running.markers import Markers
 from vbraille.sessions.running.pins import Pins
 from vbraille.sessions.running.presenter import Happening, Presenter
 from vbraille.signals import Suspension
+from vbraille.wording import setting
+
+if TYPE_CHECKING:
+    from vbraille.sessions.running.liveview import SessionView
 
 POLL_S = 0.02
 MOST_DEATHS = 3  # number of deaths after which the engine is not started again
@@ -64,22 +74,15 @@ class Runner:
     ----------
     record, progress
         Record that events are added to, and how far the session has come.
-    answers, device, pins
-        Where answers come from, what stimuli are felt on, and the conventional display beside it.
-    real
-        Whether the session runs by the clock of the machine.
+    conditions, answers
+        Conditions of the run, and where answers come from.
     say
         Function that is called with each sentence for the experimenter.
-    play
-        Function that is called with each tone for the participant.
-    mark
-        Function that is called with each event just before it is written: its kind, when it
-        happened by the session's clock, the trial, and the number of the stimulus.
-    look
-        Function that is called with the runner each time that the session has gone on a little.
 
     Attributes
     ----------
+    device : Presenter
+        What stimuli are felt on.
     trial : Trial or None
         Trial that is open, or comes next.
     attempt, stimulus : int
@@ -90,30 +93,26 @@ class Runner:
         What a line is waited for.
     """
 
+    device: Presenter
+
     def __init__(
         self,
         record: Record,
         progress: Progress,
+        conditions: Conditions,
         answers: Answers,
-        device: Presenter,
-        pins: Pins | None,
-        *,
-        real: bool,
         say: Callable[[str], None],
-        play: Callable[[Tone], None],
-        mark: Callable[[str, float, Trial | None, int], None],
-        look: Callable[[Runner], None],
     ) -> None:
         self.progress, self.protocol = progress, progress.protocol
-        self.device, self.say = device, say
+        self.say = say
         self.trial: Trial | None = None
         self.attempt = self.stimulus = 0
         self.is_shown = self.paused = self.is_over = False
         self.asked: Asked | None = None
-        self._record, self._answers, self._pins, self._real = record, answers, pins, real
-        self._play, self._mark, self._look = play, mark, look
+        self._record, self._conditions, self._answers = record, conditions, answers
+        self._pins: Pins | None = None  # the conventional display beside the device
+        self._view: SessionView | None = None
         self._suspension = Suspension()
-        self._key = ""  # the key that ends reading, if one does
         self._deaths = 0
         self._break_wanted = self._late = False
         self._told: dict[str, Any] = {}  # what the event of a run says
@@ -142,7 +141,7 @@ class Runner:
 
     @property
     def _reading(self) -> bool:
-        """True if a stimulus is read, so that the participant's key may end it."""
+        """True if a stimulus is read, so that something may end it."""
         return self.is_shown and not (self.paused or self.device.ended or self.presenter.by_key)
 
     @property
@@ -150,26 +149,79 @@ class Runner:
         """True if a stimulus of the open trial has not been shown yet."""
         return self.trial is not None and self.stimulus + 1 < len(self.trial.stimuli)
 
-    def run(self, **told: Any) -> Over:
+    def run(
+        self, monitor: tuple[str | None, int | None] | None, before_rest: Callable[[], None]
+    ) -> None:
         """Run the session from where it is to its end, or until it is stopped.
 
         Parameters
         ----------
-        told
-            What the event of the run says, such as the conditions.
-
-        Returns
-        -------
-        Over
-            Why the run is over, for `finish`; the array rests.
+        monitor
+            Host and port of a live view; None for no live view.
+        before_rest
+            Function that is called before the device is closed, which nothing may interrupt.
         """
-        self._told = {"answers": self._answers.name, **told}
+        with ExitStack() as stack:
+            self._open(stack, monitor, before_rest)
+            over = self._go_through()
+            before_rest()
+            if closed := self.device.close():
+                self._log("closed", **closed)
+            self.is_over, self.asked = True, None
+            self._log(over.kind, why=over.why, **over.data)
+            goes_on = "; session resume goes on" if over.kind == "stop" else ""
+            self.say(f"{over.kind}: {over.why}; {self.progress.done} trials have answers{goes_on}")
+            for sentence in self.progress.found if over.kind == "end" else ():
+                self.say(sentence)
+            self._look()
+
+    def _open(
+        self,
+        stack: ExitStack,
+        monitor: tuple[str | None, int | None] | None,
+        before_rest: Callable[[], None],
+    ) -> None:
+        """Open the device, and all that stands beside it."""
+        conditions, protocol, answers = self._conditions, self.protocol, self._answers
+        self._markers = Markers(conditions.markers, protocol.marker_codes, self.say)
+        stack.callback(self._markers.close)
+        versions = {"python": python_version()}
+        versions |= {name: version(name) for name in ("vbraille", "numpy")}
+        self._told |= {"answers": answers.name, "conditions": structs.asdict(conditions)}
+        self._told |= {"versions": versions}
+        if monitor is not None:
+            from vbraille.sessions.running.liveview import SessionView  # few sessions have one
+
+            view = SessionView(protocol, *monitor, fast=conditions.fast, say=self.say)
+            self._view = stack.enter_context(view)
+            self.say, self._told["monitor"] = view.say, view.described
+        if protocol.needs_pins and not answers.felt and not conditions.fast:
+            self._pins = Pins(protocol, self.progress.plan, conditions.also)
+            stack.callback(self._pins.close)
+        if protocol.medium == "device":
+            from vbraille.sessions.running.device import SessionDevice  # loads compiled code
+
+            watch = None if self._view is None else self._view.watch
+            self.device = SessionDevice(self.progress, conditions, answers, watch)
+        else:
+            self.device = Presenter()
+        stack.callback(self.device.close)
+        stack.callback(before_rest)
+        self.device.start()
+        if self._pins is not None:
+            self._pins.start()
+        if answers.felt and protocol.shows_pictures and conditions.hand == "slow":
+            hint = f"{setting('hand')} sweep:150 does"
+            self.say(f"hand: a slow one comes to few pictures in their time; {hint}")
+        self._play = open_sound(conditions.sound, answers, self.say)
+
+    def _go_through(self) -> Over:
+        """Go through all trials, and return why the run is over; the array rests then."""
         self._begin()
-        self._watch_key()
         with self._suspension:
             try:
-                while self._go_through():
-                    self._withdraw()
+                while self._go_on():
+                    pass
                 over = Over("end", self.progress.why_over)
             except NoMoreAnswers:
                 over = Over("stop", "there are no more answers")
@@ -181,46 +233,31 @@ class Runner:
             self.say(f"no confidence: the answer to {trial.name} is kept without one")
         return over
 
-    def finish(self, over: Over) -> None:
-        """Write why the run is over, and say it."""
-        self.is_over, self.asked = True, None
-        self.log(over.kind, why=over.why, **over.data)
-        goes_on = "; session resume goes on" if over.kind == "stop" else ""
-        self.say(f"{over.kind}: {over.why}; {self.progress.done} trials have answers{goes_on}")
-        for sentence in self.progress.found if over.kind == "end" else ():
-            self.say(sentence)
-        self._look(self)
-
     def _begin(self, **why: Any) -> None:
         """Write that a run has begun; another one does when the engine is started again."""
         self._record.write_ticks()  # those of an engine that died: ticks of each run begin at 0
         self._began_s, self._before_s = self.device.now_s, self.progress.t_s
         self._free_s = -1e9
-        self.log("run", **self._told, **self.device.told, **why)
+        self._log("run", clock_s=self._began_s, **self._told, **self.device.told, **why)
 
-    def _go_through(self) -> bool:
-        """Do what comes next until nothing does; return whether there may be something again."""
+    def _go_on(self) -> bool:
+        """Do what comes next; return whether there may be something again."""
         try:
-            while self._go_on():
-                pass
-            if self._answers.typed:
+            if (asked := self.progress.next_item) is not None:
+                self._ask_item(*asked)
+            elif (trial := self.progress.next_trial) is not None:
+                self._conduct(trial)
+            elif self._answers.typed:
                 self.trial = None
                 last = f"last: {self.progress.why_over}"
                 self.say(f"{last}; Enter ends, undo takes back the last answer")
                 with suppress(NoMoreAnswers):
                     self._await_enter()
+                return False
+            else:
+                return False
         except Again:
-            return True
-        return False
-
-    def _go_on(self) -> bool:
-        """Do what comes next; return whether there was anything."""
-        if (asked := self.progress.next_item) is not None:
-            self._ask_item(*asked)
-        elif (trial := self.progress.next_trial) is not None:
-            self._conduct(trial)
-        else:
-            return False
+            self._withdraw()
         return True
 
     def _ask_item(self, item: Item, number: int) -> None:
@@ -228,7 +265,7 @@ class Runner:
         self.trial = None
         self.say(f"question: {item.ask} Type {item.typed}")
         line, reply = self._ask_for(Asked("reply", item=item), item.parse)
-        self.log("reply", name=item.name, number=number, reply=reply, **_numbered(line))
+        self._log("reply", name=item.name, number=number, reply=reply, **_numbered(line))
         self.say(f"reply: {item.name} is in")
         self._free_s = self.device.now_s
 
@@ -267,7 +304,7 @@ class Runner:
         """Have a break until Enter is typed."""
         self._break_wanted = False
         trial, self.trial = self.trial, None
-        self.log("break")
+        self._log("break")
         if self._answers.typed:
             planned_s, planned = self.protocol.session.break_s, ""
             if planned_s is not None:
@@ -275,7 +312,7 @@ class Runner:
                 self._due_s["break"] = self.device.now_s + planned_s
             self.say(f"break: {self.progress.done} trials are done; {planned}Enter goes on")
             self._await_enter()
-        self.log("go")
+        self._log("go")
         self.trial = trial
 
     def _present(self, trial: Trial) -> None:
@@ -308,7 +345,7 @@ class Runner:
             self._play(Tone(*self.protocol.sound.cue))
             self._start_times(now_s)
         self.is_shown = True
-        self.log("cue", now_s, **shown)
+        self._log("cue", now_s, **shown)
         presenter.show(first=is_first, turned=turned)
         if not turned:
             which = f", {ordinal(self.stimulus)}" if self.stimulus else ""
@@ -359,7 +396,7 @@ class Runner:
             told |= {} if self.presenter.reached else {"early": True}
             told |= {"late": True} if self._late else {}
         self._withdraw()
-        self.log("answer", **told)
+        self._log("answer", **told)
         self.say(f"answer: {self.name}, {asks.said(answer, spelling)}")
         outcome, was = asks.outcome(trial, answer), asks.was(trial, spelling)
         if outcome and (trial.practice or self.protocol.trial.feedback):
@@ -374,7 +411,7 @@ class Runner:
         if self._answers.typed and line is None:
             self.say(f"confidence: {self.name}; type {scale.least} to {scale.most}")
         line, sure = self._ask_for(self._of_trial("confidence"), scale.parse, line)
-        self.log("confidence", confidence=sure, **_numbered(line))
+        self._log("confidence", confidence=sure, **_numbered(line))
         self.say(f"rated: {self.name}, confidence {sure}")
         self._free_s = self.device.now_s
 
@@ -449,10 +486,9 @@ class Runner:
         self.asked = asked
         if self._suspension.asked:
             self._suspend()
-        self._answers.awaits_key = self._reading
         if self.is_shown and not self._answers.typed:
             self.presenter.press()  # answers that are not typed take no time to read paper
-        wait_s = POLL_S if self._real else 0.0
+        wait_s = 0.0 if self._conditions.fast else POLL_S
         if not self.paused:
             wait_s = min([wait_s, *(due_s - self.device.now_s for due_s in self._due_s.values())])
         # A file or a program is asked when the stimulus is read; a person may type at any time.
@@ -460,12 +496,10 @@ class Runner:
         found = self._answers.line(asked if is_due else None, max(wait_s, 0.0))
         self._poll()
         self._watch_time()
-        self._look(self)
-        if isinstance(found, Press):
-            self._end_reading(self._key)
-        elif found is not None:
+        self._look()
+        if found is not None:
             return self._obey(found)
-        elif asked is not None and asked.what == "answer" and self.is_shown and not self.paused:
+        if asked is not None and asked.what == "answer" and self.is_shown and not self.paused:
             return self._controlled(asked.trial)
         return None
 
@@ -494,8 +528,8 @@ class Runner:
         elif self.is_shown and presenter.by_key and not presenter.read:
             if why := presenter.press():
                 self.say(f"too early: {why}")
-        elif self._reading and self._key == "key:enter":
-            self._end_reading(self._key)
+        elif self._reading and self.protocol.trial.end == "key:enter":
+            self._end_reading("key:enter")
         else:
             return line
         return None
@@ -530,7 +564,7 @@ class Runner:
             return
         if kind == "fault" and not self.is_shown:
             return
-        self.log(kind, at_s, **data)
+        self._log(kind, at_s, **data)
         if said:
             self.say(said)
         if kind == "contact" and self.protocol.trial.exposure_from == "contact":
@@ -548,7 +582,7 @@ class Runner:
         """Start the engine again after it died; an open trial gets a new attempt."""
         self._deaths += 1
         was_shown, self.is_shown = self.is_shown, False
-        self.log("fault" if was_shown else "device", what=str(fault))
+        self._log("fault" if was_shown else "device", what=str(fault))
         if self._deaths >= MOST_DEATHS:
             raise fault
         self.say(f"fault: {fault}; it is started again")
@@ -573,11 +607,11 @@ class Runner:
                     self._end_reading("exposure")
                 case "warning":
                     self._play(Tone(*self.protocol.sound.warning))
-                    self.log("warning")
+                    self._log("warning")
                     self.say(f"warning: {self.name}, {pace.warning_s:g} s")
                 case "answer" if pace.late == "missed":
                     self._withdraw()
-                    self.log("missed")
+                    self._log("missed")
                     self.say(f"missed: {self.name}, no answer in {pace.answer_s:g} s")
                     self._free_s = now_s
                     raise Again
@@ -586,12 +620,12 @@ class Runner:
                     self.say(f"late: {self.name}, after {pace.answer_s:g} s")
 
     def _end_reading(self, by: str, at_s: float | None = None) -> None:
-        """End reading of the stimulus that is shown, by the participant's key or by the time."""
+        """End reading of the stimulus that is shown, by Enter, a button or the time."""
         if not self._reading:
             return
         at_s = self.device.now_s if at_s is None else at_s
         self.presenter.end_reading()
-        self.log("ended", at_s, by=by)
+        self._log("ended", at_s, by=by)
         self._due_s.pop("exposure", None)
         which, typed = f"the {ordinal(self.stimulus)}", ""
         if not self._more_to_come:
@@ -600,18 +634,6 @@ class Runner:
             if self.protocol.trial.exposure_s is not None:
                 self._expect("answer", at_s, self.protocol.trial.answer_s)
         self.say(f"ended: {which}, by {by.replace(':', ' ')}{typed}")
-
-    def _watch_key(self) -> None:
-        """Look out for the participant's key, or say that Enter is pressed instead."""
-        self._key, key = self.protocol.trial.end or "", self.protocol.trial.key
-        if not key or self._key == "key:enter" or not self._answers.typed:
-            return
-        name = self._key.removeprefix("key:")
-        if self._answers.watch(key):
-            self.say(f"key: {name} ends reading, with no Enter after it")
-        else:
-            self._key = "key:enter"
-            self.say(f"key: lines are typed whole here; Enter ends reading instead of {name}")
 
     def _suspend(self) -> None:
         """Pause, and stop the process; afterwards Enter ends the pause."""
@@ -631,12 +653,16 @@ class Runner:
         self.is_shown = self.paused = False
         self._due_s.clear()
 
-    def log(self, kind: str, at_s: float | None = None, **data: Any) -> None:
+    def _log(self, kind: str, at_s: float | None = None, **data: Any) -> None:
         """Write an event, of the open trial if there is one; it is on the disk then."""
         at_s = self.device.now_s if at_s is None else at_s
-        self._mark(kind, at_s, self.trial, data.get("stimulus", 0))
+        self._markers.mark(kind, at_s, self.trial, data.get("stimulus", 0))
         t_s = self._elapsed_s(at_s)
         self.progress.take(self._record.append(kind, t_s, self.trial, self.attempt, **data))
+
+    def _look(self) -> None:
+        if self._view is not None:
+            self._view.look(self)
 
     def _elapsed_s(self, at_s: float) -> float:
         return self._before_s + at_s - self._began_s
@@ -658,7 +684,7 @@ class Runner:
             trials = self.progress.plan.trials
             self.trial = next(trial for trial in trials if trial.key == newest.key)
             self.attempt = self.progress.tried[self.trial.key].attempts
-        self.log("undo", **data)
+        self._log("undo", **data)
         raise Again
 
     def repeat(self, _: str) -> None:
@@ -666,7 +692,7 @@ class Runner:
         if not self.is_shown:
             self.say("repeat: no trial is open")
             return
-        self.log("repeat")
+        self._log("repeat")
         raise Again
 
     def note(self, text: str) -> None:
@@ -674,7 +700,7 @@ class Runner:
         if not text:
             self.say("note: type the note after the word")
             return
-        self.log("note", text=text)
+        self._log("note", text=text)
         self.say("note: is in")
 
     def pause(self, _: str = "") -> None:
@@ -684,7 +710,7 @@ class Runner:
             self.device.rest()
             if self._pins is not None:
                 self._pins.rest()
-            self.log("pause")
+            self._log("pause")
         self.say("pause: the array is at rest; Enter goes on")
 
     def go(self, _: str = "") -> None:
@@ -697,7 +723,7 @@ class Runner:
         self._due_s = {what: due_s + away_s for what, due_s in self._due_s.items()}
         if self.is_shown:
             self.presenter.go()
-        self.log("go")
+        self._log("go")
         self.say("go: on")
 
     def have_break(self, _: str) -> None:
@@ -714,7 +740,7 @@ class Runner:
             return
         self._withdraw()
         self.trial = None
-        self.log("begin")
+        self._log("begin")
         raise Again
 
     def stop(self, _: str) -> None:
