@@ -82,14 +82,9 @@ def open_source(
     stream = _stream(file, name)
     try:
         found = find_format(stream, name) if form is None else form.lower()
-<<<<<<< HEAD
-        if found not in _FORMATS:
-            raise InputError(f"unknown file format {form!r}{nearest(found, _FORMATS)}")
-=======
-        if found not in FORMATS:
+        if found not in _READERS:
             raise InputError(f"unknown file format {form!r}{nearest(found, _READERS)}")
         reader, *takes = _READERS[found].split()
->>>>>>> main
         given = {"encoding": encoding, "brf_table": brf_table, "keep_lines": keep_lines or None}
         options: dict[str, Any] = {}
         for option, value in given.items():
@@ -200,7 +195,7 @@ def _shown(by: str, name: str, *texts: str) -> str:
     """
     for pattern, told in _SHOWN_BY[by].items():
         if any(re.match(pattern, text, re.S) for text in texts):
-            if told in FORMATS:
+            if told in _READERS:
                 return told
             raise InputError(f"{name} is {told}")
     return ""
