@@ -14,7 +14,6 @@ PARTS = (
     "reader",
     "reading",
     "straying",
-    "figure",
     "scene",
     "live",
     "screen",

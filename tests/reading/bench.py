@@ -4,7 +4,6 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from vbraille.layout import Layout, cells_per_line
 from vbraille.reading.device import ReadingDevice
 from vbraille.reading.exploration import Exploration
 from vbraille.reading.outputs import Console
@@ -46,11 +45,6 @@ class NoKeyboard:
         return []
 
 
-def book_of(text, width):
-    """Lay a text out in lines of a number of cells."""
-    return Layout(Book(text_source(text), BrailleTable("en-ueb-g1.ctb")), width)
-
-
 class Reading:
     """A text under a simulated hand; a context manager."""
 
@@ -63,11 +57,9 @@ class Reading:
         table = BrailleTable("en-ueb-g1.ctb")
         source = text if not isinstance(text, str) else text_source(text)
         self.book = Book(source, table)
-        width = how.pop("width", None)
         places = places or Places(None, print)
-        layout = Layout(self.book, width or cells_per_line(model.style.geometry, given.display))
         kept = places.book(digest, Path(f"/{digest}"), "book")
-        self.reader = Reader(layout, self.device, [self.heard], kept, fixed=bool(width), **how)
+        self.reader = Reader(self.book, self.device, [self.heard], kept, **how)
         self.reader.begin()
         self.loop = Exploration(self.reader, self.device, NoKeyboard(), self.heard)
 

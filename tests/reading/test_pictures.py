@@ -102,22 +102,9 @@ def test_a_picture_is_read_again_when_its_file_changes(tmp_path):
 def book_with_figure(model):
     source = open_source("texts/scenes/pond.md")
     reading = Reading(source, model, hand="sweep:1")
-    figures = BookFigures(reading.book.source, Path("texts/scenes"), lambda: model.style, print)
+    figures = BookFigures(reading.book.source, Path("texts/scenes"), model.style)
     reading.reader.figures = figures
     return reading
-
-
-def test_a_figure_stands_below_its_line_and_joins_the_page():
-    with book_with_figure(TWO) as reading:
-        said = []
-        while "below this line" not in " ".join(said):
-            assert reading.press("n") != ["no next line"], said
-            said += reading.run(0.1)
-        surface = reading.reader
-        reading.until(lambda: surface.figured)
-        row = next(row for row in range(surface.rows) if surface.has_free(row))
-        reading.finger(20.0, (row + 2) * reading.reader.style.geometry.line_pitch_mm)
-        assert reading.press("u")[0].startswith("figure: A map with braille")
 
 
 def test_a_figure_is_felt_alone_and_left():

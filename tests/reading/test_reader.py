@@ -47,7 +47,7 @@ def test_keys_do_not_leave_the_lines_that_are_read():
 
 
 def test_a_line_that_is_longer_than_the_hand_goes_comes_in_parts():
-    with Reading(WORDS, width=60, hand="sweep:1") as reading:
+    with Reading(WORDS, cells=60, hand="sweep:1") as reading:
         width = reading.reader.width
         assert reading.press("right") == [f"from cell {width + 1}"]
         reading.press("right", "right")

@@ -11,6 +11,7 @@ import re
 import sys
 import threading
 import time
+from collections import deque
 from contextlib import suppress
 from typing import Any, Final, NamedTuple
 
@@ -24,6 +25,7 @@ _LOOK_S: Final = 0.02  # between looks at what is to be shown
 _CHECK_S: Final = 0.5  # writing to a display that was unplugged succeeds: it is asked for
 _END_S: Final = 2.0
 _SILENT_S: Final = 3.0  # after which what drives the display has stopped answering
+_KEPT_KEYS: Final = 100  # of those that no program has asked for
 _STILL: Final = "what drives the display does not answer; start it again, or give its address"
 
 
@@ -88,6 +90,10 @@ class ConventionalDisplay:
         What display it is; None as long as it is not there.
     away : str
         Why it is not there, in words for people; empty if it is, or nothing is known yet.
+    keys : deque[int]
+        Codes of the keys that were pressed on it, which `brlapi` expands and describes.
+    brlapi
+        The module python3-brlapi.
 
     Raises
     ------
@@ -104,7 +110,8 @@ class ConventionalDisplay:
             )
         self.standing: DisplayStands | None = None
         self.away = ""
-        self._brlapi = load_brlapi()
+        self.keys: deque[int] = deque(maxlen=_KEPT_KEYS)
+        self.brlapi = load_brlapi()
         self._host = found[1] or ""
         self._told: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._wanted: tuple[int, bytes | None] = 0, b""
@@ -166,7 +173,7 @@ class ConventionalDisplay:
         """Drive the display whenever it is there."""
         while not self._ended:
             try:
-                why = self._drive(self._brlapi.Connection(host=self._host.encode() or None))
+                why = self._drive(self.brlapi.Connection(host=self._host.encode() or None))
             except Exception as error:  # brlapi's own are no subclass of one another
                 why = self._explained(error)
             if why and not self._ended:
@@ -212,8 +219,8 @@ class ConventionalDisplay:
                     connection.writeDots(cells[: columns * rows].ljust(columns * rows, b"\0"))
                     self._told.put(CellsTaken(number, time.monotonic_ns()))
                     shown = number
-                while shown is not None and connection.readKey(0):
-                    pass  # its keys are nothing to a line of cells
+                while shown is not None and (code := connection.readKey(0)):
+                    self.keys.append(code)
                 if time.monotonic() >= due_s:
                     due_s = time.monotonic() + _CHECK_S
                     if not self._online(connection) or connection.displaySize != (columns, rows):
@@ -229,7 +236,7 @@ class ConventionalDisplay:
 
     def _online(self, connection: Any) -> bool:
         """Tell whether the display is plugged in, as far as its driver can tell."""
-        brlapi = self._brlapi
+        brlapi = self.brlapi
         try:
             return bool(
                 connection.getParameter(brlapi.PARAM_DEVICE_ONLINE, 0, brlapi.PARAMF_GLOBAL)

@@ -324,8 +324,6 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
         Tactile picture under the hand; None where lines are read.
     beside
         The line under the hand in another mapping, where that was asked for.
-    figures
-        Tactile pictures on the page of a text, at their places.
     signals
         Signals of the picture under the hand.
     commands
@@ -354,7 +352,6 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
     done: bool = False
     scene: SceneShown | None = None
     beside: BesideShown | None = None
-    figures: list[SceneShown] = []
     signals: list[SignalShown] = []
     commands: list[CommandShown] = []
     cards: list[list[CardShown]] = []

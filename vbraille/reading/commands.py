@@ -112,7 +112,7 @@ def command(
 
 
 def both_ways(
-    thing: str,
+    thing: str | tuple[str, str],
     keys: str,
     nvda: str = "",
     also: str = "",
@@ -123,14 +123,18 @@ def both_ways(
 ) -> Callable:
     """Put two commands into the table: to the next of a thing, and to the previous.
 
-    The function takes the step, 1 or -1, too. The first half of the keys goes on.
+    Two phrases of help instead of a thing are of any two ways, and have two names. The function
+    takes the step, 1 or -1, too. Keys before a bar go on.
     """
+    helps = (f"next {thing}", f"previous {thing}") if isinstance(thing, str) else thing
 
     def decorate(function: Callable[..., None]) -> Callable[..., None]:
-        for half, (step, way) in enumerate(((1, "next"), (-1, "previous"))):
-            own, other, more = (_half(each.split(), half) for each in (keys, nvda, also))
-            told = {**how, "first": first and not half, "name": f"{way}-{name or _named(function)}"}
-            command(f"{way} {thing}", own, other, also=more, **told)(partial(function, step=step))
+        called = name or _named(function)
+        names = called.split() if " " in called else [f"next-{called}", f"previous-{called}"]
+        for half, step in enumerate((1, -1)):
+            own, other, more = (each.partition("|")[2 * half] for each in (keys, nvda, also))
+            told = {**how, "first": first and not half, "name": names[half], "also": more}
+            command(helps[half], own, other, **told)(partial(function, step=step))
         return function
 
     return decorate
@@ -138,11 +142,6 @@ def both_ways(
 
 def _named(function: Callable) -> str:
     return function.__name__.strip("_").replace("_", "-")
-
-
-def _half(keys: list[str], half: int) -> str:
-    middle = len(keys) // 2
-    return " ".join(keys[middle:] if half else keys[:middle])
 
 
 def table(where: Where) -> list[Command]:

@@ -84,10 +84,22 @@ class Explored:
         self.refuse(f"no {'next' if step > 0 else 'previous'} {thing}")
 
     def ask(
-        self, question: str, answer: Callable[[str], None], earlier: Sequence[str] = ()
+        self,
+        question: str,
+        answer: Callable[[str], None],
+        earlier: Sequence[str] = (),
+        *,
+        may_be_empty: bool = False,
     ) -> None:
-        """Ask for a line that is typed; Escape leaves the question."""
-        self.prompt = Prompt(question, answer, earlier)
+        """Ask for a line that is typed; Escape leaves the question, as does an empty line."""
+
+        def answered(typed: str) -> None:
+            if typed.strip() or may_be_empty:
+                answer(typed.strip())
+            else:
+                self.say("cancelled")
+
+        self.prompt = Prompt(question, answered, earlier)
         self.say(question)
 
     # What outputs show of it

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.knobs import KNOBS
-from vbraille.reading.commands import command
+from vbraille.reading.commands import both_ways, command
 from vbraille.render import MAPPINGS
 from vbraille.render.braille.mappings import single_row
 from vbraille.translate import Book, BrailleTable, find_table
@@ -17,25 +17,17 @@ if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
     from vbraille.render.braille.mappings import Mapping
 
-# Keys for more and less of each knob, own and NVDA's.
-_KEYS = {
-    "texture": ("t T", "r R"),
-    "contrast": ("c C", ""),
-    "dot_width": ("d D", ""),
-    "dot_spacing": ("s S", ""),
-    "cell_gap": ("j J", ""),
-}
 _BAND_STEP = 0.1  # in line pitches, of which it is 1 at most
 _CONTRACTED = 2  # the grade that is asked for
 
 
-def _turn(reader: Reader, name: str, steps: int) -> None:
+def _turn(reader: Reader, step: int, name: str) -> None:
     """Turn a knob by a step, and say where it stands."""
     knob = KNOBS[name]
     value = knob.value(reader.style)
-    wanted = knob.turned(value, steps)
+    wanted = knob.turned(value, step)
     if wanted == value:
-        reader.refuse_beyond(knob.said(value), up=steps > 0)
+        reader.refuse_beyond(knob.said(value), up=step > 0)
     else:
         _tune(reader, knob.said(wanted), **{knob.field: wanted})
 
@@ -50,13 +42,15 @@ def _tune(reader: Reader, said: str, **changes: Any) -> None:
         reader.say(said)
 
 
-for name, sets in _KEYS.items():
-    for half, (way, words) in enumerate((("more", "wider dots"), ("less", "narrower dots"))):
-        label = words if name == "dot_width" else f"{way} {KNOBS[name].label}"
-        keys, nvda = (each.split()[half] if each else "" for each in sets)
-        command(label, keys, nvda, name=f"{way}-{name.replace('_', '-')}")(
-            partial(_turn, name=name, steps=-1 if half else 1)
-        )
+for name, ways, keys, nvda in (
+    ("texture", ("more texture", "less texture"), "t | T", "r | R"),
+    ("contrast", ("more contrast", "less contrast"), "c | C", ""),
+    ("dot_width", ("wider dots", "narrower dots"), "d | D", ""),
+    ("dot_spacing", ("more dot spacing", "less dot spacing"), "s | S", ""),
+    ("cell_gap", ("more cell gap", "less cell gap"), "j | J", ""),
+):
+    hyphened = name.replace("_", "-")
+    both_ways(ways, keys, nvda, name=f"more-{hyphened} less-{hyphened}")(partial(_turn, name=name))
 
 
 @command("next dot mapping", "#", steers=True)
@@ -98,24 +92,18 @@ def straying(reader: Reader) -> None:
         _stray(reader, "shown: the line of the finger", manner="line")
 
 
-@command("wider band: leave a line of a page later", ")")
-def wider_band(reader: Reader) -> None:
-    _turn_band(reader, _BAND_STEP)
-
-
-@command("narrower band: leave a line of a page sooner", "(")
-def narrower_band(reader: Reader) -> None:
-    _turn_band(reader, -_BAND_STEP)
-
-
-def _turn_band(reader: Reader, by: float) -> None:
+@both_ways(
+    ("wider band: leave a line of a page later", "narrower band: leave a line of a page sooner"),
+    ") | (", name="wider-band narrower-band",
+)  # fmt: skip
+def band(reader: Reader, step: int) -> None:
     before = reader.style.straying.band
-    band = round(min(max(before + by, 0.0), 1.0), 2)
-    said = f"band: {band:g} line pitches"
-    if band == before and reader.rows:
-        reader.refuse_beyond(said, up=by > 0)
+    value = round(min(max(before + step * _BAND_STEP, 0.0), 1.0), 2)
+    said = f"band: {value:g} line pitches"
+    if value == before and reader.rows:
+        reader.refuse_beyond(said, up=step > 0)
     else:
-        _stray(reader, said, band=band)
+        _stray(reader, said, band=value)
 
 
 def _stray(reader: Reader, said: str, **changes: Any) -> None:
@@ -167,16 +155,10 @@ def contracted(reader: Reader) -> None:
 
 @command("translate by the table of a language", "y")
 def language(reader: Reader) -> None:
-    def answer(typed: str) -> None:
-        if typed.strip():
-            _translate(reader, typed.strip())
-        else:
-            reader.say("cancelled")
-
     if reader.book.table is None:
         reader.refuse("the text is in braille already")
     else:
-        reader.ask("language, such as fr", answer)
+        reader.ask("language, such as fr", lambda typed: _translate(reader, typed))
 
 
 def _translate(reader: Reader, language: str, grade: int | None = None) -> None:

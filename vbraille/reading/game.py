@@ -170,7 +170,11 @@ class Game(Explored):
             self.turn_up()
 
     @both_ways(
-        "card that lies face down", "n p", also="button:1 pins:LNDN", first=True, where=Where.GAME
+        "card that lies face down",
+        "n | p",
+        also="button:1 | pins:LNDN",
+        first=True,
+        where=Where.GAME,
     )
     def card(self, step: int) -> None:
         """Choose the next card that lies face down, or the one before."""

@@ -150,7 +150,7 @@ class LiveOutput(Output):
             "geometry": geometry_shown(geometry),
             "rows_shown": rows_shown(style, self._device.display),
             "lines": self._lines(reader),
-            "place": f"{reader.named()}, {100 * reader.layout.progress(reader.line):.0f} %",
+            "place": f"{reader.named}, {100 * reader.layout.progress(reader.line):.0f} %",
             "knobs": [
                 KnobShown(
                     knob.name, knob.label, knob.unit, knob.value(style), knob.step, knob.low,
@@ -160,10 +160,6 @@ class LiveOutput(Output):
             ],
             "mapping": mapping_said(style.mapping),
             "beside": beside,
-            "figures": [
-                _scene_shown(figure, self._drawn_of(figure, 0), 0.0, -top_mm)
-                for figure, top_mm in (reader.figures.on(reader) if reader.figured else ())
-            ],
         }  # fmt: skip
 
     def _lines(self, reader: Any) -> list[LineShown]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
+from functools import partial
 from typing import TYPE_CHECKING
 
 from vbraille.reading.commands import both_ways, command
@@ -13,23 +14,18 @@ from vbraille.reading.reader import letter_said
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from vbraille.layout import Line
     from vbraille.reading.reader import Reader
 
-_USUAL, _SPEEDS, _FASTER = 8.0, (1.0, 30.0), 1.2  # cells a second
+_USUAL, _SLOWEST, _FASTEST, _FASTER = 8.0, 1.0, 30.0, 1.2  # cells a second
 _LOOKED_BACK = 5000  # blocks, for the page and the heading
 LINES_PER_PAGE = 25  # of a braille page, where the book has no pages of print
 
 
 @both_ways(
-    "line", "n down p up", "down up", "button:1 pins:LNDN button:2 pins:LNUP",
+    "line", "n down | p up", "down | up", "button:1 pins:LNDN | button:2 pins:LNUP",
     first=True, steers=True,
 )  # fmt: skip
-def line(reader: Reader, step: int) -> None:
-    _go(reader, step)
-
-
-def _go(reader: Reader, step: int, *, at_end: bool = False) -> None:
+def line(reader: Reader, step: int, *, at_end: bool = False) -> None:
     other = reader.beside(step)
     if other is None:
         reader.refuse_step(step, "line")
@@ -38,49 +34,35 @@ def _go(reader: Reader, step: int, *, at_end: bool = False) -> None:
     reader.announce()
 
 
-@command("pan right, then to the next line", "right", also="pins:FWINRT")
-def pan_right(reader: Reader) -> None:
-    _pan(reader, 1)
-
-
-@command("pan left, then to the previous line", "left", also="pins:FWINLT")
-def pan_left(reader: Reader) -> None:
-    _pan(reader, -1)
-
-
-def _pan(reader: Reader, step: int) -> None:
+@both_ways(
+    ("pan right, then to the next line", "pan left, then to the previous line"),
+    "right | left", also="pins:FWINRT | pins:FWINLT", name="pan-right pan-left",
+)  # fmt: skip
+def pan(reader: Reader, step: int) -> None:
     if reader.pan(step):
         reader.say(f"from cell {reader.part.first + 1}")
     else:
-        _go(reader, step, at_end=step < 0)
+        line(reader, step, at_end=step < 0)
 
 
-@command("start of the line", "home", also="pins:LNBEG")
-def line_start(reader: Reader) -> None:
-    reader.show(reader.line)
-    reader.say("start of the line")
-
-
-@command("end of the line", "end", also="pins:LNEND")
-def line_end(reader: Reader) -> None:
-    reader.show(reader.line, len(reader.line) - 1)
-    reader.say("end of the line")
+@both_ways(
+    ("end of the line", "start of the line"), "end | home", also="pins:LNEND | pins:LNBEG",
+    name="line-end line-start",
+)  # fmt: skip
+def line_end(reader: Reader, step: int) -> None:
+    reader.show(reader.line, len(reader.line) - 1 if step > 0 else 0)
+    reader.say(f"{'end' if step > 0 else 'start'} of the line")
 
 
 @command("first line of the text", "< ctrl-home", also="pins:TOP")
 def top(reader: Reader) -> None:
-    _jump_to(reader, reader.first_line())
+    reader.jump(reader.first)
 
 
 @command("last line of the text", "> ctrl-end", also="pins:BOT")
 def bottom(reader: Reader) -> None:
-    last = None if reader.last is None else reader.layout.line(reader.last)
-    _jump_to(reader, last or reader.layout.last())
-
-
-def _jump_to(reader: Reader, line: Line | None) -> None:
-    if line is not None:
-        reader.jump(line.place)
+    last = reader.layout.last()
+    reader.jump(reader.last if last is None else min(reader.last, last.place))
 
 
 @command("back to the place before the last jump", "b alt-left", also="pins:BACK")
@@ -98,8 +80,9 @@ def skip_blank(reader: Reader) -> None:
 
 
 @both_ways(
-    "page of lines on the surface", "] ctrl-pagedown [ ctrl-pageup", also="pins:WINDN pins:WINUP"
-)
+    "page of lines on the surface", "] ctrl-pagedown | [ ctrl-pageup",
+    also="pins:WINDN | pins:WINUP",
+)  # fmt: skip
 def surface_page(reader: Reader, step: int) -> None:
     if not reader.turn_page(step):
         reader.refuse_step(step, "page")
@@ -115,22 +98,20 @@ def autoscroll(reader: Reader) -> None:
     _scroll(reader, 0.0 if reader.scroll_cells_s else _USUAL)
 
 
-@command("faster autoscroll", "+ f8")
-def faster(reader: Reader) -> None:
-    _scroll(reader, min((reader.scroll_cells_s or _USUAL) * _FASTER, max(_SPEEDS)))
-
-
-@command("slower autoscroll", "- f7", "-")
-def slower(reader: Reader) -> None:
-    _scroll(reader, max((reader.scroll_cells_s or _USUAL) / _FASTER, min(_SPEEDS)))
+@both_ways(
+    ("faster autoscroll", "slower autoscroll"), "+ f8 | - f7", "+ f8 | -", name="faster slower"
+)
+def faster(reader: Reader, step: int) -> None:
+    cells_s = (reader.scroll_cells_s or _USUAL) * _FASTER**step
+    _scroll(reader, min(max(cells_s, _SLOWEST), _FASTEST))
 
 
 def _scroll(reader: Reader, cells_s: float) -> None:
     said = f"autoscroll: {cells_s:.1f} cells a second" if cells_s else "autoscroll: off"
     if cells_s == reader.scroll_cells_s:
-        reader.refuse_beyond(said, up=cells_s == max(_SPEEDS))
+        reader.refuse_beyond(said, up=cells_s == _FASTEST)
     else:
-        reader.scroll(cells_s)
+        reader.scroll_cells_s = cells_s
         reader.say(said)
 
 
@@ -139,7 +120,6 @@ def _scroll(reader: Reader, cells_s: float) -> None:
 
 @command("say line, page, percent and heading", "i", "delete", first=True, also="pins:INFO")
 def info(reader: Reader) -> None:
-    here = reader.figure_here
     page = heading = ""
     for number, block in enumerate(reader.book.source.blocks(reader.line.block.number, -1)):
         page = page or block.page_number
@@ -149,8 +129,7 @@ def info(reader: Reader) -> None:
     if not page and reader.has_pages is False:
         page = f"{(reader.layout.number(reader.line) - 1) // LINES_PER_PAGE + 1} in braille"
     said = (
-        here and f"figure: {here[0]}",
-        reader.named(),
+        reader.named,
         page and f"page {page}",
         f"{100 * reader.layout.progress(reader.line):.0f} percent",
         heading and f"heading: {heading}",
@@ -160,26 +139,20 @@ def info(reader: Reader) -> None:
 
 @command("say what is under the finger", "u", also="pins:DESCCHAR")
 def under_finger(reader: Reader) -> None:
-    here = reader.figure_here
-    if here is not None:
-        reader.say(f"figure: {here[0]}, here: {here[1] or 'nothing with a name'}")
-    else:
-        reader.say(reader.cell_said(reader.cell))
+    reader.say(reader.cell_said(reader.cell))
 
 
 @command("say the word under the finger", "w", also="pins:SPEAK_CURR_WORD")
-def say_word(reader: Reader) -> None:
-    reader.say(_word(reader) or "no word under the finger")
+def say_word(reader: Reader, *, spelled: bool = False) -> None:
+    word = "" if reader.cell is None else reader.line.word(reader.cell)
+    if spelled:
+        word = ", ".join(map(letter_said, unicodedata.normalize("NFC", word)))
+    reader.say(word or "no word under the finger")
 
 
-@command("spell the word under the finger", "W", also="pins:SPELL_CURR_WORD")
-def spell_word(reader: Reader) -> None:
-    word = unicodedata.normalize("NFC", _word(reader))
-    reader.say(", ".join(map(letter_said, word)) or "no word under the finger")
-
-
-def _word(reader: Reader) -> str:
-    return "" if reader.cell is None else reader.line.word(reader.cell)
+command(
+    "spell the word under the finger", "W", also="pins:SPELL_CURR_WORD", name="spell-word"
+)(partial(say_word, spelled=True))  # fmt: skip
 
 
 @command("say the line again", "V f5", also="pins:SAY_LINE")
@@ -192,19 +165,18 @@ def say_line(reader: Reader) -> None:
 
 @command("set a bookmark with a name", "m", first=True)
 def bookmark(reader: Reader) -> None:
-    reader.ask("name of the bookmark", lambda name: _set(reader, name.strip()))
+    def answer(name: str) -> None:
+        number_bookmark(reader, name)
+
+    reader.ask("name of the bookmark", answer, may_be_empty=True)
 
 
 @command("set a bookmark with a number", "M", also="pins:SETMARK")
-def number_bookmark(reader: Reader) -> None:
-    _set(reader, "")
-
-
-def _set(reader: Reader, name: str) -> None:
+def number_bookmark(reader: Reader, name: str = "") -> None:
     names = reader.kept.bookmarks
     name = name or str(next(n for n in range(1, len(names) + 2) if str(n) not in names))
     reader.kept.mark(name, reader.place, around(reader.line))
-    reader.say(f"bookmark {name}: set at {reader.named()}")
+    reader.say(f"bookmark {name}: set at {reader.named}")
 
 
 @command("go to a bookmark", "o", also="pins:GOTOMARK")
@@ -227,12 +199,9 @@ def _choose(reader: Reader, question: str, use: Callable[[str, int], object]) ->
         reader.refuse("no bookmarks")
         return
 
-    def answer(typed: str) -> None:
-        name = typed.strip()
+    def answer(name: str) -> None:
         if name in marks:
             use(name, marks[name])
-        elif not name:
-            reader.say("cancelled")
         else:
             reader.say(f"no bookmark {name!r}; {_listed(reader)}", Cue.NOT_FOUND)
 

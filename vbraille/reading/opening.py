@@ -10,7 +10,6 @@ from vbraille.devices.base import Device
 from vbraille.devices.registry import check_actuators, check_travel
 from vbraille.display import Display, check_rate
 from vbraille.errors import DeviceError, InputError
-from vbraille.layout import Layout, cells_per_line
 from vbraille.reading.device import HAND, POLL_S, ReadingDevice
 from vbraille.reading.frames import check_lines, read_as
 from vbraille.reading.outputs import Cue, Output
@@ -122,12 +121,11 @@ class OpenDevice(ReadingDevice):
         if self._closed:
             raise DeviceError("the device is closed; open it again")
         check_lines(first, last)
-        width = cells_per_line(self.style.geometry, self.display)
         source = text_source(text, keep_lines=keep_lines)
         book = Book(source, choose_table(language, grade, table))
         self._reader = None
         self._reader = Reader(
-            Layout(book, width),
+            book,
             self,
             self._outputs,
             Places(None, self._outputs[0].say).book("", Path(), ""),
@@ -239,7 +237,7 @@ def open_to_read(
     >>> device = simulated_device(vbraille.STRESS2, hand="sweep:150", clock=clock)
     >>> with vbraille.open(device, clock=clock) as opened:
     ...     for line in opened.read("Two lines of braille, read by a hand that sweeps over them"):
-    ...         print(opened.reader.named(), line.text.strip())
+    ...         print(opened.reader.named, line.text.strip())
     line 1 Two lines of braille, read by
     line 2 a hand that sweeps over them
     """

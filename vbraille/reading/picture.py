@@ -415,7 +415,7 @@ class Picture(Explored):
         names = [element.name for element in self.index.elements]
         self.ask("element", answer, names[::-1])
 
-    @both_ways("element", "n e p E", "n e p", first=True, where=Where.PICTURE | Where.FIGURE)
+    @both_ways("element", "n e | p E", "n e | p", first=True, where=Where.PICTURE | Where.FIGURE)
     def element(self, step: int) -> None:
         """Go to the next element, or to the one before."""
         count = len(self.index.elements)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import sys
 import unicodedata
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
 
 _GATHERED = 20  # blocks at a time, for a search to come
 _KEPT_EVERY_S, _WATCHED_EVERY_S = 0.3, 0.5
+_LONGEST_S = 0.25  # from one look to the next, as far as scrolling by time is concerned
 _TRAIL = 100  # places that are kept to go back to
 
 
@@ -40,16 +43,16 @@ class Reader(Surface):
 
     Parameters
     ----------
-    layout
-        Lines of the book.
+    book
+        The book.
     device, outputs, key_set
         As of `Explored`.
     kept
         Where the place in the book and its bookmarks are kept.
     lines
         Numbers of the first and last line to read; None for the end.
-    fixed
-        Whether lines are as long as the layout has them, and not as the hand can go.
+    cells
+        Number of cells in a line; None for as many as the hand can go over.
     attended
         Whether a person is at a keyboard, so that the end of the book is not the end of reading.
     by_hand
@@ -65,6 +68,8 @@ class Reader(Surface):
 
     Attributes
     ----------
+    first, last : int
+        Places at which the first line to read begins and the last one ends.
     back : list[int]
         Places before jumps.
     undo : list[BrailleStyle]
@@ -82,13 +87,13 @@ class Reader(Surface):
 
     def __init__(
         self,
-        layout: Layout,
+        book: Book,
         device: ReadingDevice,
         outputs: Sequence[Output],
         kept: KeptBook,
         *,
         lines: tuple[int, int | None] = (1, None),
-        fixed: bool = False,
+        cells: int | None = None,
         key_set: str = "usual",
         attended: bool = True,
         by_hand: bool = True,
@@ -97,46 +102,38 @@ class Reader(Surface):
         save: Callable[[BrailleStyle], str] | None = None,
         changed: Callable[[], Book | None] = lambda: None,
     ) -> None:
-        style = device.model.style
-        super().__init__(device, outputs, key_set, style, figures=figures, by_hand=by_hand)
-        self.layout, self.kept, self.save, self.attended = layout, kept, save, attended
-        self.first, self.last = lines
-        self._fixed, self._echo, self._changed = fixed, echo, changed
+        super().__init__(device, outputs, key_set, device.model.style, by_hand=by_hand)
+        self.kept, self.figures, self.save, self.attended = kept, figures, save, attended
+        self._cells, self._echo, self._changed = cells, echo, changed
+        self.layout = Layout(book, cells or self.width)
+        first, last = (number and self.layout.line(number) for number in lines)
+        if first is None:
+            count = self.layout.count()
+            raise InputError(
+                f"{book.source.name} has {count} lines; line {lines[0]} is past the end"
+            )
+        self._start, self.first = first, first.place
+        self.last = sys.maxsize if last is None else _last_place(last)
         self.back: list[int] = []
         self.undo: list[BrailleStyle] = []
         self.pattern: re.Pattern[str] | None = None  # what is searched for
         self.forward = True
-        self._found: int | None = None  # place of the last hit or mark that was gone to
         self.typed: dict[str, list[str]] = {}  # by question
         self.skip_blank = False
         self.scroll_cells_s = self._cells_due = 0.0  # cells a second by time; 0 for by hand
-        self._ticked_s = self._kept_s = self._watched_s = 0.0
-        self._unkept: Line | None = None
-        self.finished = False  # whether the end was said
         self.has_pages: bool | None = None  # whether the book says where pages begin, once known
         self.note_from: int | None = None  # place of the reference that led to a note
         self.beside_mapping: Mapping | None = None  # that the live view shows beside the array
         self.lines_read = 0
-        self._figure_due = False
-        self._begins_at = self._line_to_begin()
+        self._found: int | None = None  # place of the last hit or mark that was gone to
+        self._ticked_s = self._kept_s = self._watched_s = 0.0
+        self._unkept: Line | None = None
+        self._ended = self._figure_due = False  # whether the end was said, and what is to be said
 
     def begin(self) -> None:
-        """Put the first line under the hand, and show it."""
-        self.show(self._begins_at)
-
-    def _line_to_begin(self) -> Line:
-        """Line at the place that is kept, or the first of those to read."""
-        place = self.kept.find(self.book.source, self.say)
-        found = self.layout.place(place) if place else None
-        if found is not None and self.has(found[0]):
-            return found[0]
-        line = self.first_line()
-        if line is None:
-            name, count = self.book.source.name, self.layout.count()
-            if not count:
-                raise InputError(f"{name} has no text")
-            raise InputError(f"{name} has {count} lines; line {self.first} is past the end")
-        return line
+        """Put the line at the place that is kept under the hand, or the first of those to read."""
+        found = self.layout.place(self.kept.find(self.book.source, self.say))
+        self.show(found[0] if found and self.has(found[0]) else self._start)
 
     # What is there
 
@@ -161,11 +158,18 @@ class Reader(Surface):
         return self.line.masks
 
     @property
+    def _finger(self) -> int | None:
+        """Number of the cell under the finger, from the left of what is shown."""
+        x_mm = self.device.x_mm
+        return None if x_mm is None else math.floor(x_mm / self.style.geometry.cell_pitch_mm)
+
+    @property
     def cell(self) -> int | None:
         """Cell of the line under the finger; None if there is none."""
-        if self.device.x_mm is None or self.figure_here:
+        part, finger = self.part, self._finger
+        if finger is None or not max(-part.first, 0) <= finger < len(part):
             return None
-        return self.part.cell_at(self.device.x_mm, self.style.geometry)
+        return part.first + finger
 
     @property
     def place(self) -> int:
@@ -183,26 +187,13 @@ class Reader(Surface):
         return found if found is not None and line.place <= found < line.end else None
 
     @property
-    def figure_here(self) -> tuple[str, str] | None:
-        """Titles of the figure of the page under the finger, and of its part there."""
-        if self.figures is None or not self.figured:
-            return None
-        return self.figures.here(self, self.device.pose)
-
     def named(self) -> str:
         """Name of the line in sentences, such as "line 12"."""
         return f"line {self.layout.number(self.line)}"
 
-    def first_line(self) -> Line | None:
-        """First line of those that are read."""
-        return self.layout.line(self.first)
-
     def has(self, line: Line) -> bool:
         """Tell whether a line is among those that are read."""
-        if (self.first, self.last) == (1, None):
-            return True
-        number = self.layout.number(line)
-        return self.first <= number and (self.last is None or number <= self.last)
+        return line.place <= self.last and _last_place(line) >= self.first
 
     def beside(self, step: int) -> Line | None:
         """Line after the one under the hand, or before it where the step is -1."""
@@ -225,23 +216,22 @@ class Reader(Surface):
 
     def show(self, line: Line, cell: int = 0, *, under: bool = False) -> None:
         """Put the part of a line with a cell under the hand, or that cell under the finger."""
-        before = self.parts and self.line
-        part, x_mm = Part(line, self.width), self.device.x_mm
-        if under and x_mm is not None:
-            self.put(part.under(cell, x_mm, self.style.geometry))
-        else:
-            self.put(part.at(cell))
+        before, finger = self.parts and self.line, self._finger
+        first = max(cell, 0) // self.width * self.width
+        if under and finger is not None:
+            first = cell - min(max(finger, 0), self.width - 1)
+        self.put(Part(line, self.width, first))
         self._arrive(another=before != line)
 
     def _arrive(self, *, another: bool = True) -> None:
         """Tell of the line that is under the hand now."""
-        self.finished = False
+        self._ended = False
         self._unkept = self.line
         self._cells_due = max(len(self.part), 1)
         self._watch = HandWatch(
             self.display.span_mm,
             self.end_mm,
-            self.named(),
+            self.named,
             by_hand=self.by_hand and not self.rows,
             otherwise="n brings the next line" if self.attended else "Ctrl-C stops",
         )
@@ -254,7 +244,7 @@ class Reader(Surface):
     def announce(self, what: str = "") -> None:
         """Say which line a command has led to, unless that is printed already."""
         if self._echo == "none":
-            self.say(f"{what}, {self.named()}" if what else self.named())
+            self.say(f"{what}, {self.named}" if what else self.named)
 
     def jump(self, place: int, what: str = "", *, remember: bool = True) -> None:
         """Go to a place of the text, and say what is there; refuse it if that is not read."""
@@ -292,13 +282,12 @@ class Reader(Surface):
         tick, alone = ticks[-1], self.device.hand_done and not self.attended
         felt = int(tick["line"]) == self.number and not int(tick["flags"]) & HELD
         missed = alone and felt  # the end, between two ticks
+        asked = followed.done and self.by_hand and not self.scroll_cells_s and not self._ended
         if missed and self.device.once:
             self.done = True
-        elif missed or (
-            followed.done and self.by_hand and not self.scroll_cells_s and not self.finished
-        ):
+        elif missed or asked:
             self.go_on()
-        elif not self.finished:
+        elif not self._ended:
             patient = self.device.held
             for sentence in self._watch.watch(ticks, reached=self.reached, patient=patient):
                 self.say(sentence)
@@ -312,7 +301,7 @@ class Reader(Surface):
         self._unkept = None
         self.kept.keep(0, 0.0, "")  # another reading begins at the beginning
         if self.attended:
-            self.finished = True
+            self._ended = True
             self.say("end of the text", Cue.LIMIT)
         else:
             self.done = True
@@ -335,12 +324,6 @@ class Reader(Surface):
         self._arrive()
         return True
 
-    def scroll(self, cells_s: float) -> None:
-        """Scroll at a speed in cells a second; 0 ends it."""
-        if not self.scroll_cells_s:
-            self._cells_due = max(len(self.part), 1)
-        self.scroll_cells_s = cells_s
-
     def idle(self, now_s: float) -> None:
         """Keep the place, take what is ready, and let time bring the next line."""
         if self._unkept is not None and now_s - self._kept_s >= _KEPT_EVERY_S:
@@ -349,14 +332,13 @@ class Reader(Surface):
         if now_s - self._watched_s >= _WATCHED_EVERY_S:
             self._watched_s = now_s
             self._read_anew()
-        if self.figures is not None:
-            self.figures.take(self)
-            due, self._figure_due = self._figure_due, False
-            if due:
-                self.figures.tell(self.line, self.say, below=self.has_free(self.row))
-        passed_s, self._ticked_s = now_s - self._ticked_s, now_s
-        if self.scroll_cells_s and not (self.device.paused or self.finished):
-            self._cells_due -= min(passed_s, 0.25) * self.scroll_cells_s
+        if self._figure_due and self.figures is not None:
+            self._figure_due = False
+            if said := self.figures.said(self.line):
+                self.say(said)
+        passed_s, self._ticked_s = min(now_s - self._ticked_s, _LONGEST_S), now_s
+        if self.scroll_cells_s and not (self.device.paused or self._ended):
+            self._cells_due -= passed_s * self.scroll_cells_s
             if self._cells_due <= 0:
                 self.go_on()
         self.book.source.gather(_GATHERED)
@@ -372,7 +354,7 @@ class Reader(Surface):
         self.inside = None
         self.show_parts(self.parts, self.row)
         self._arrive(another=False)
-        self.say(self.named())
+        self.say(self.named)
 
     def route(self, cell: int) -> None:
         """Say what is at a cell of the line, and bring it under the finger."""
@@ -426,19 +408,10 @@ class Reader(Surface):
 
     def lay_out(self, book: Book, place: int, *, under: bool) -> None:
         """Lay the text out by another table or width, with a place of it under the hand."""
-        before = self.layout
-        layout = Layout(book, before.width if self._fixed else self.width)
-
-        def renumbered(number: int | None) -> int | None:
-            line = None if number in (1, None) else before.line(number)
-            found = None if line is None else layout.place(line.place)
-            return number if found is None else layout.number(found[0])
-
+        layout = Layout(book, self._cells or self.width)
         line, cell = layout.place(place) or (layout.last(), 0)
-        if line is None:
-            raise InputError(f"{book.source.name} has no text")
+        assert line is not None, "a book has a line"
         self.layout = layout
-        self.first, self.last = renumbered(self.first) or 1, renumbered(self.last)
         self.show(line, cell, under=under)
 
     def _read_anew(self) -> None:
@@ -454,7 +427,12 @@ class Reader(Surface):
             return
         self.back = []
         before.close()
-        self.say(f"the file has changed; read again, {self.named()}")
+        self.say(f"the file has changed; read again, {self.named}")
+
+
+def _last_place(line: Line) -> int:
+    """Place of the last character of a line; of one that is blank, the place of the line."""
+    return max(line.place, line.end - 1)
 
 
 def letter_said(text: str) -> str:

@@ -8,7 +8,7 @@ from functools import cache
 from itertools import takewhile
 from typing import TYPE_CHECKING
 
-from vbraille.reading.commands import command
+from vbraille.reading.commands import both_ways, command
 from vbraille.reading.outputs import Cue
 
 if TYPE_CHECKING:
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 _QUOTES = "'\"`´‘’‚‛“”„‟′″‹›«»ʼ＇＂"
 _DASHES = "-‐‑‒–—―−⁃﹘﹣－"
 _MARKS = "[\u0300-\u036f\u00ad]*"
-_FIRST_BACK = 4096  # characters that are looked at first, backward
 
 
 def pattern_for(wanted: str) -> re.Pattern[str]:
@@ -36,24 +35,6 @@ def hits(pattern: re.Pattern[str], text: str, start: int, end: int) -> list[int]
     """Indices of all hits that begin from an index on, before another."""
     found = (match.start() for match in pattern.finditer(text, start))
     return list(takewhile(lambda hit: hit < end, found))
-
-
-def find_after(pattern: re.Pattern[str], text: str, at: int) -> int | None:
-    """Index of the first hit from an index on; None without one."""
-    match = pattern.search(text, max(at, 0))
-    return None if match is None else match.start()
-
-
-def find_before(pattern: re.Pattern[str], text: str, at: int) -> int | None:
-    """Index of the last hit that begins before an index; None without one."""
-    end, size = at, _FIRST_BACK
-    while end > 0:  # in larger and larger pieces
-        start = max(0, end - size)
-        found = hits(pattern, text, start, end)
-        if found:
-            return found[-1]
-        end, size = start, size * 4
-    return None
 
 
 def _class(character: str) -> str:
@@ -78,29 +59,24 @@ def _alike() -> dict[str, list[str]]:
     return found
 
 
-@command("search forward", "/ f3", "ctrl-f /", first=True, also="pins:NXSEARCH")
-def search_forward(reader: Reader) -> None:
-    _ask(reader, forward=True)
-
-
-@command("search backward", "\\ f4", also="pins:PRSEARCH")
-def search_backward(reader: Reader) -> None:
-    _ask(reader, forward=False)
-
-
-def _ask(reader: Reader, *, forward: bool) -> None:
+@both_ways(
+    ("search forward", "search backward"), "/ f3 | \\ f4", "ctrl-f / | \\ f4",
+    also="pins:NXSEARCH | pins:PRSEARCH", name="search-forward search-backward", first=True,
+)  # fmt: skip
+def search(reader: Reader, step: int) -> None:
     typed = reader.typed.setdefault("search", [])
 
     def answer(text: str) -> None:
-        if text.strip():
-            typed.append(text.strip())
+        if text:
+            typed.append(text)
         if not typed:
             reader.say("cancelled")
             return
-        reader.pattern, reader.forward = pattern_for(typed[-1]), forward
-        _find(reader, reader.line.place - 1 if forward and text.strip() else reader.place)
+        reader.pattern, reader.forward = pattern_for(typed[-1]), step > 0
+        _find(reader, reader.line.place - 1 if step > 0 and text else reader.place)
 
-    reader.ask("search for" if forward else "search backward for", answer, typed)
+    question = "search for" if step > 0 else "search backward for"
+    reader.ask(question, answer, typed, may_be_empty=True)
 
 
 @command("search again", ".", "f3 .")
@@ -116,14 +92,18 @@ def _find(reader: Reader, at: int) -> None:
     """Go to the next hit after a place, or the last before it, and tell it from its neighbours."""
     pattern, text, said = reader.pattern, reader.book.source.text, repr(reader.typed["search"][-1])
     assert pattern is not None, "a search is running"
-    hit = find_after(pattern, text, at + 1) if reader.forward else find_before(pattern, text, at)
-    if hit is None:
+    if reader.forward:
+        match = pattern.search(text, max(at + 1, 0))
+        found = [] if match is None else [match.start()]
+    else:
+        found = hits(pattern, text, 0, at)
+    if not found:
         way = "after" if reader.forward else "before"
         reader.say(f"{said}: not found {way} here", Cue.NOT_FOUND)
         return
-    found = reader.layout.place(hit)
-    if found is not None:
-        line, cell = found
+    hit = found[-1]
+    if there := reader.layout.place(hit):
+        line, cell = there
         said += f": cell {cell + 1}"
         beside = hits(pattern, text, line.place, line.end)
         if beside[1:] and hit in beside:

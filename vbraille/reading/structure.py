@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from functools import partial
+from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.reading.commands import both_ways, command
+from vbraille.reading.commands import Where, both_ways, command
 from vbraille.reading.moving import LINES_PER_PAGE
 from vbraille.reading.outputs import Cue
 from vbraille.translate import BlockKind, MarkKind
@@ -18,18 +20,29 @@ if TYPE_CHECKING:
     from vbraille.translate import Block, Mark
 
 _LINKS = (MarkKind.LINK, MarkKind.NOTE)
+_PERCENT = re.compile(r"(\d+\.?\d*) *%")
 _MOST_LISTED = 100  # headings; of more, those of the upper levels are listed
 
 
-def heading_said(block: Block, level: int | None = None) -> str:
+def _go(reader: Reader, step: int, thing: str, said: Callable[[Block], str]) -> None:
+    """Go to the next block of which something can be said, or to the one before."""
+    place = reader.line.place
+    for block in reader.book.source.blocks(reader.line.block.number, step):
+        if (block.start - place) * step > 0 and not block.continues and said(block):
+            reader.jump(block.start, said(block))
+            return
+    reader.refuse_step(step, thing)
+
+
+def _heading_said(block: Block, level: int | None = None) -> str:
     """Sentence on a heading; empty for other blocks, and for another level than the one wanted."""
-    if block.heading is None or (level is not None and block.heading[0] != level):
+    if block.heading is None or level not in (None, block.heading[0]):
         return ""
     return f"heading level {block.heading[0]}: {block.heading[1]}"
 
 
 def _paragraph_said(block: Block) -> str:
-    return heading_said(block) or block.kind.value if block.words else ""
+    return _heading_said(block) or block.kind.value if block.words else ""
 
 
 def _item_said(block: Block) -> str:
@@ -41,25 +54,11 @@ def _plain(block: Block) -> str:
     return block.words.removeprefix("• ")
 
 
-def _go(reader: Reader, step: int, thing: str, said: Callable[[Block], str]) -> None:
-    """Go to the next block of which something can be said, or to the one before."""
-    here = reader.line.block
-    number = here.number
-    if step < 0 and reader.line.place > here.start and not here.continues:
-        number += 1  # in the middle of a heading, the one before is that heading itself
-    for block in reader.book.source.blocks(number + step, step):
-        words = "" if block.continues else said(block)
-        if words:
-            reader.jump(block.start, words)
-            return
-    reader.refuse_step(step, thing)
-
-
 def _group(reader: Reader, step: int, thing: str, kind: BlockKind) -> None:
     """Go to a list, a table or a quotation."""
 
     def said(block: Block) -> str:
-        before = reader.book.source.block(block.number - 1) if block.number else None
+        before = reader.book.source.block(block.number - 1)
         goes_on = before is not None and (
             before.group == block.group if block.group else before.kind is kind
         )
@@ -70,13 +69,13 @@ def _group(reader: Reader, step: int, thing: str, kind: BlockKind) -> None:
 
 def _mark(reader: Reader, step: int, thing: str, kinds: tuple[MarkKind, ...]) -> None:
     """Go to a link, a note or a figure."""
-    line, place = reader.line, reader.found_here
-    if place is None:
-        place = line.place - 1 if step > 0 else line.place
-    for block in reader.book.source.blocks(line.block.number, step):
+    here = reader.found_here
+    place = reader.line.place - (step > 0) if here is None else here
+    for block in reader.book.source.blocks(reader.line.block.number, step):
         for mark in block.marks[::step]:
-            if mark.kind in kinds and (block.start + mark.start - place) * step > 0:
-                reader.jump(block.start + mark.start, _mark_said(reader, block, mark))
+            at = block.start + mark.start
+            if mark.kind in kinds and (at - place) * step > 0:
+                reader.jump(at, _mark_said(reader, block, mark))
                 return
     reader.refuse_step(step, thing)
 
@@ -92,24 +91,24 @@ def _mark_said(reader: Reader, block: Block, mark: Mark) -> str:
 
 
 both_ways(
-    "paragraph", "a ctrl-down A ctrl-up", "p ctrl-down P ctrl-up", "pins:NXPGRPH pins:PRPGRPH",
-    name="paragraph",
+    "paragraph", "a ctrl-down | A ctrl-up", "p ctrl-down | P ctrl-up",
+    "pins:NXPGRPH | pins:PRPGRPH", name="paragraph",
 )(partial(_go, thing="paragraph", said=_paragraph_said))  # fmt: skip
-both_ways("heading", "e E", "h H", name="heading", first=True)(
-    partial(_go, thing="heading", said=heading_said)
+both_ways("heading", "e | E", "h | H", name="heading", first=True)(
+    partial(_go, thing="heading", said=_heading_said)
 )
 for level in range(1, 7):
     thing = f"heading of level {level}"
     command(f"next {thing}", str(level), name=f"next-heading-{level}")(
-        partial(_go, step=1, thing=thing, said=partial(heading_said, level=level))
+        partial(_go, step=1, thing=thing, said=partial(_heading_said, level=level))
     )
 for name, thing, keys, nvda, run in (
-    ("list", "list", "l L", "", partial(_group, kind=BlockKind.ITEM)),
-    ("table", "table", "r R", "t T", partial(_group, kind=BlockKind.ROW)),
-    ("quotation", "quotation", "Q alt-q", "q Q", partial(_group, kind=BlockKind.QUOTE)),
-    ("item", "item of a list", "I alt-i", "i I", partial(_go, said=_item_said)),
-    ("link", "link or note", "k K", "k tab K shift-tab", partial(_mark, kinds=_LINKS)),
-    ("figure", "figure or picture", ", ;", "g G", partial(_mark, kinds=(MarkKind.IMAGE,))),
+    ("list", "list", "l | L", "", partial(_group, kind=BlockKind.ITEM)),
+    ("table", "table", "r | R", "t | T", partial(_group, kind=BlockKind.ROW)),
+    ("quotation", "quotation", "Q | alt-q", "q | Q", partial(_group, kind=BlockKind.QUOTE)),
+    ("item", "item of a list", "I | alt-i", "i | I", partial(_go, said=_item_said)),
+    ("link", "link or note", "k | K", "k tab | K shift-tab", partial(_mark, kinds=_LINKS)),
+    ("figure", "figure or picture", ", | ;", "g | G", partial(_mark, kinds=(MarkKind.IMAGE,))),
 ):
     both_ways(thing, keys, nvda, name=name)(partial(run, thing=thing))
 
@@ -118,10 +117,8 @@ for name, thing, keys, nvda, run in (
 def follow(reader: Reader) -> None:
     line, source, here = reader.line, reader.book.source, reader.found_here
     block, place = line.block, reader.place if here is None else here
-    marks = (mark for mark in block.marks if mark.kind in _LINKS)
-    ahead = next((mark for mark in marks if block.start + mark.end > place), None)
-    if ahead is not None and block.start + ahead.start >= line.end:
-        ahead = None
+    begin, links = block.start, (mark for mark in block.marks if mark.kind in _LINKS)
+    ahead = next((one for one in links if one.end > place - begin and one.start < line.after), None)
     target = "" if ahead is None else ahead.target
     to = source.anchor(target[1:]) if target.startswith("#") else None
     there = None if to is None else source.block_at(to)
@@ -130,15 +127,15 @@ def follow(reader: Reader) -> None:
         _go_back(reader, block)
     elif ahead is None:
         reader.refuse("no link or note here")
-    elif not target.startswith("#"):
-        reader.say(f"link: {target}")
-    elif to is None or there is None:
+    elif there is not None:
+        reader.note_from = begin + ahead.start
+        words = there.words.strip("[] ")
+        noted = there.kind is BlockKind.NOTE
+        reader.jump(there.start, f"note {words}" if noted else _heading_said(there) or words)
+    elif target.startswith("#"):
         reader.refuse("the link leads nowhere")
     else:
-        reader.note_from = block.start + ahead.start
-        words = there.words.strip("[] ")
-        named = f"note {words}" if there.kind is BlockKind.NOTE else heading_said(there) or words
-        reader.jump(to, named)
+        reader.say(f"link: {target}")
 
 
 def _go_back(reader: Reader, note: Block) -> None:
@@ -151,33 +148,30 @@ def _go_back(reader: Reader, note: Block) -> None:
         note = before
     names = {f"#{name}" for name in note.anchors}
     if place is None:
-        place = next(
-            (
-                block.start + mark.start
-                for block in source.blocks(note.number - 1, -1)
-                for mark in block.marks
-                if mark.kind is MarkKind.NOTE and mark.target in names
-            ),
-            None,
+        references = (
+            block.start + mark.start
+            for block in source.blocks(note.number - 1, -1)
+            for mark in block.marks
+            if mark.kind is MarkKind.NOTE and mark.target in names
         )
+        place = next(references, None)
     if place is None:
         reader.refuse("no reference to this note")
     else:
         reader.jump(place, "back at the text")
 
 
-@both_ways("page", "f pagedown F pageup")
+@both_ways("page", "f pagedown | F pageup")
 def page(reader: Reader, step: int) -> None:
-    if has_pages(reader):
+    if _has_pages(reader):
         _go(reader, step, "page", lambda b: f"page {b.page_number}" if b.page_number else "")
         return
     at, above = divmod(reader.layout.number(reader.line) - 1, LINES_PER_PAGE)  # both from 0
-    wanted = at + 1 if step > 0 else at - (not above)
-    if not _go_to_braille_page(reader, wanted):
+    if not _go_to_braille_page(reader, at + 2 if step > 0 else at + 1 - (not above)):
         reader.refuse_step(step, "page")
 
 
-def has_pages(reader: Reader) -> bool:
+def _has_pages(reader: Reader) -> bool:
     """Tell whether the book says where its pages begin."""
     if reader.has_pages is None:
         reader.has_pages = any(block.page_number for block in reader.book.source.blocks())
@@ -185,9 +179,9 @@ def has_pages(reader: Reader) -> bool:
 
 
 def _go_to_braille_page(reader: Reader, number: int) -> bool:
-    line = reader.layout.line(number * LINES_PER_PAGE + 1)
+    line = reader.layout.line((number - 1) * LINES_PER_PAGE + 1)
     if line is not None:
-        reader.jump(line.place, f"page {number + 1} in braille")
+        reader.jump(line.place, f"page {number} in braille")
     return line is not None
 
 
@@ -196,40 +190,27 @@ def go_to(reader: Reader) -> None:
     typed = reader.typed.setdefault("go to", [])
 
     def answer(text: str) -> None:
-        text = text.strip()
-        if not text:
-            reader.say("cancelled")
-            return
         typed.append(text)
+        source = reader.book.source
         if text.endswith("%"):
-            _go_to_share(reader, text)
-        elif not _go_to_page(reader, text):
-            reader.refuse(f"no page {text}" if text.isalnum() else f"{text!r} is not a page number")
+            percent = _PERCENT.fullmatch(text.replace(",", "."))
+            if percent is None or float(percent[1]) > 100:
+                reader.refuse(f"{text!r} is not 0 to 100 percent")
+                return
+            length, share = len(source.text), float(percent[1])
+            place = min(int(share * length / 100), max(length - 2, 0))
+            reader.jump(place, f"{share:g} percent")
+            return
+        if _has_pages(reader):
+            pages = (one for one in source.blocks() if one.page_number.lower() == text.lower())
+            if (found := next(pages, None)) is not None:
+                reader.jump(found.start, f"page {found.page_number}")
+                return
+        elif text.isdecimal() and _go_to_braille_page(reader, int(text)):
+            return
+        reader.refuse(f"no page {text}" if text.isalnum() else f"{text!r} is not a page number")
 
     reader.ask("page, or percent such as 40%", answer, typed)
-
-
-def _go_to_share(reader: Reader, typed: str) -> None:
-    try:
-        percent = float(typed[:-1].replace(",", "."))
-    except ValueError:
-        percent = -1.0
-    if 0 <= percent <= 100:
-        length = len(reader.book.source.text)
-        place = min(int(percent * length / 100), max(length - 2, 0))
-        reader.jump(place, f"{percent:g} percent")
-    else:
-        reader.refuse(f"{typed!r} is not 0 to 100 percent")
-
-
-def _go_to_page(reader: Reader, typed: str) -> bool:
-    if not has_pages(reader):
-        return typed.isdecimal() and _go_to_braille_page(reader, int(typed) - 1)
-    for block in reader.book.source.blocks():
-        if block.page_number.lower() == typed.lower():
-            reader.jump(block.start, f"page {block.page_number}")
-            return True
-    return False
 
 
 @command("list the headings, and go to one", "O", "f7", first=True)
@@ -245,17 +226,15 @@ def contents(reader: Reader) -> None:
             reader.say(title)
 
     def answer(typed: str) -> None:
-        number, words = typed.partition(":")[0].strip(), typed.strip().casefold()
-        if number.isdecimal():
-            found = headings[int(number) - 1 : int(number)]
-        else:
-            found = [each for each in headings if words and words in each.title.casefold()]
+        number, words = typed.partition(":")[0], typed.casefold()
+        numbered = [each for n, each in enumerate(headings, 1) if str(n) == number]
+        found = numbered or [each for each in headings if words in each.title.casefold()]
         if len(found) == 1:
             reader.jump(found[0].place, f"heading level {found[0].level}: {found[0].title}")
         elif found:
             reader.say(f"{len(found)} headings: {'; '.join(each.title for each in found)}")
         else:
-            reader.say(f"no heading {typed.strip()!r}", Cue.NOT_FOUND)
+            reader.say(f"no heading {typed!r}", Cue.NOT_FOUND)
 
     # Up and down go through the headings from the place of the reader on.
     before = sum(each.place <= reader.place for each in headings)
@@ -268,25 +247,32 @@ def say_headers(reader: Reader) -> None:
     if block.kind is not BlockKind.ROW:
         reader.refuse("this is not a row of a table")
         return
-    for row in reader.book.source.blocks(block.number):
-        if row.kind is BlockKind.ROW and row.group != block.group:
-            break
-        if row.kind is BlockKind.ROW and any(row.headers):
-            named = "headers" if row is block else "header row"
-            reader.say(f"{named}: {', '.join(row.headers)}")
-            return
-    reader.refuse("the table has no headers")
+    rows = (row for row in reader.book.source.blocks(block.number) if row.kind is BlockKind.ROW)
+    of_table = takewhile(lambda row: row.group == block.group, rows)
+    headed = next((row for row in of_table if any(row.headers)), None)
+    if headed is None:
+        reader.refuse("the table has no headers")
+    else:
+        named = "headers" if headed is block else "header row"
+        reader.say(f"{named}: {', '.join(headed.headers)}")
 
 
 @command("feel the figure of this line, alone", "G", "E")
 def feel_figure(reader: Reader) -> None:
     try:
-        inside = None if reader.figures is None else reader.figures.feel(reader)
+        figure = None if reader.figures is None else reader.figures.of(reader.line)
+        if figure is None:
+            reader.refuse("no figure here")
+            return
+        from vbraille.pictures.loading import check_fits
+        from vbraille.reading.picture import Picture  # loads numba
+
+        check_fits(figure.scene, reader.display)
     except InputError as error:
         reader.say(f"figure not felt: {error}", Cue.NOT_FOUND)
         return
-    if inside is None:
-        reader.refuse("no figure here")
-    else:
-        reader.inside = inside
-        inside.begin()
+    how = reader.device, reader.outputs, reader.key_set
+    reader.inside = Picture(figure, *how, where=Where.FIGURE)
+    reader.inside.begin()
+    for note in figure.notes:
+        reader.say(f"note: {note}")

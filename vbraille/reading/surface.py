@@ -22,9 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.braille.geometry import Geometry
     from vbraille.reading.device import ReadingDevice
-    from vbraille.reading.figures import BookFigures
     from vbraille.reading.outputs import Output
     from vbraille.render import BrailleStyle
 
@@ -66,20 +64,6 @@ class Part:
         before = np.zeros(max(-self.first, 0), np.uint8)
         return np.concatenate((before, self.line.masks[max(self.first, 0) :]))[: len(self)]
 
-    def at(self, cell: int) -> Part:
-        """Part with a cell, of those into which the line falls from its start."""
-        return Part(self.line, self.width, max(cell, 0) // self.width * self.width)
-
-    def cell_at(self, x_mm: float, geometry: Geometry) -> int | None:
-        """Cell of the line at a place on the surface; None if there is none."""
-        shown = math.floor(x_mm / geometry.cell_pitch_mm)
-        return self.first + shown if 0 <= shown < len(self) and self.first + shown >= 0 else None
-
-    def under(self, cell: int, x_mm: float, geometry: Geometry) -> Part:
-        """Part with a cell at a place."""
-        shown = min(max(math.floor(x_mm / geometry.cell_pitch_mm), 0), self.width - 1)
-        return Part(self.line, self.width, cell - shown)
-
 
 class Followed(NamedTuple):
     """Progress of the hand: it is on another line, came to a line's end, or is done with all."""
@@ -98,15 +82,13 @@ class Surface(Explored):
         As of `Explored`.
     style
         How braille is shown.
-    figures
-        The figures of the book; None if it has none.
     by_hand
         Whether a hand that stays below a page asks for the next one.
 
     Attributes
     ----------
     parts : list[Part or None]
-        What is shown, from the top; None where the text has not begun yet or a figure stands.
+        What is shown, from the top; None where the text has not begun yet.
     row : int
         Row that is read; the finger is on it, or was on it last.
     rows : int
@@ -117,8 +99,6 @@ class Surface(Explored):
         Number by which ticks name what is shown, which grows.
     reached : bool
         Whether the hand has been at the end of the line.
-    figured : bool
-        Whether the figures of the page are shown with it.
     """
 
     def __init__(
@@ -128,15 +108,13 @@ class Surface(Explored):
         key_set: str,
         style: BrailleStyle,
         *,
-        figures: BookFigures | None = None,
         by_hand: bool = True,
     ) -> None:
         super().__init__(device, outputs, key_set)
-        self.figures, self.by_hand = figures, by_hand
+        self.by_hand = by_hand
         self.parts: Sequence[Part | None] = []
         self.row = self.number = 0
-        self.figured = False
-        self.finger_row = -1  # in which the finger is now; -1 if it is above the page
+        self._finger_row = -1  # in which the finger is now; -1 if it is above the page
         self.fit(style)
 
     def neighbour(self, line: Any, step: int) -> Any:  # noqa: ARG002 - a screen has no more
@@ -169,69 +147,41 @@ class Surface(Explored):
         return [part.line for part in self.parts if part is not None]
 
     @property
-    def masks(self) -> list[NDArray[np.uint8]]:
-        """Dot masks of each row."""
-        blank = np.zeros(0, np.uint8)
-        return [blank if part is None else part.masks for part in self.parts]
-
-    @property
     def end_mm(self) -> float:
         """Place where the last dot of the line ends."""
         return self.style.geometry.extent_mm(len(self.part))
-
-    def has_free(self, row: int) -> bool:
-        """Tell whether rows are kept free below a row's line, for its figure."""
-        return self.parts[row] is not None and [*self.parts[row + 1 : row + 2]] == [None]
 
     # What is shown
 
     def put(self, part: Part) -> None:
         """Put a part of a line under the hand; on a page into the row of the finger."""
-        row = self.finger_row if 0 <= self.finger_row < self.rows else 0
-        self._lay(part, min(row, self.rows - 1 - self._free(part.line)))
+        self._lay(part, self._finger_row if 0 <= self._finger_row < self.rows else 0)
 
     def turn_over(self, step: int) -> bool:
         """Show the next page, or the one before; False if there are no lines."""
         line = self.neighbour(self.lines[-1 if step > 0 else 0], step)
         if line is None:
             return False
-        if step < 0 and self.rows:
-            line = [line, *self._fitting(line, -1, self.rows - 1 - self._free(line))][-1]
+        if step < 0:
+            line = [line, *self._beyond(line, -1, self.rows - 1)][-1]
         self._lay(Part(line, self.width), 0)
-        if 0 <= self.finger_row < len(self.parts) and self.parts[self.finger_row] is not None:
-            self._enter(self.finger_row)
+        if 0 <= self._finger_row < len(self.parts):
+            self._enter(self._finger_row)
         return True
 
     def _lay(self, part: Part, row: int) -> None:
         """Show a part of a line, on a page in a row with the lines around it."""
-        if not self.rows:
-            self.show_parts([part], 0)
-            return
-        above = self._fitting(part.line, -1, row)[::-1]
-        below = self._fitting(part.line, 1, self.rows - row - 1 - self._free(part.line))
         # Where a part was moved under the finger, the other lines begin where they do.
         first = part.first if part.first >= 0 and part.first % part.width == 0 else 0
-        parts: list[Part | None] = []
-        for line in (*above, part.line, *below):
-            other = Part(line, part.width, first)
-            parts += [part if line is part.line else other, *[None] * self._free(line)]
-        before = row - parts.index(part)
-        self.show_parts([None] * before + parts, row)
+        above = self._beyond(part.line, -1, row)[::-1]
+        below = self._beyond(part.line, 1, self.rows - row - 1)
+        over, under = ([Part(line, part.width, first) for line in of] for of in (above, below))
+        self.show_parts([*[None] * (row - len(over)), *over, part, *under], row)
 
-    def _free(self, line: Any) -> int:
-        """Number of rows to keep free below a line."""
-        if self.figures is None or not self.rows:
-            return 0
-        pitch_mm, travel_mm = self.style.geometry.line_pitch_mm, self.display.travel_mm
-        return self.figures.rows_below(line, pitch_mm, self.rows, travel_mm)
-
-    def _fitting(self, line: Any, step: int, rows: int) -> list[Any]:
-        """Lines after one, or before it, for which there are rows, with their figures."""
+    def _beyond(self, line: Any, step: int, most: int) -> list[Any]:
+        """Lines after one, or before it."""
         found: list[Any] = []
-        while (line := self.neighbour(line, step)) is not None:
-            rows -= 1 + self._free(line)
-            if rows < 0:
-                break
+        while len(found) < most and (line := self.neighbour(line, step)) is not None:
             found.append(line)
         return found
 
@@ -241,8 +191,7 @@ class Surface(Explored):
         first = max(here.first + step * here.width, 0)
         if (step < 0 and here.first <= 0) or first >= max(map(len, self.lines)):
             return False
-        moved = [None if part is None else Part(part.line, part.width, first)
-                 for part in self.parts]  # fmt: skip
+        moved = [part and Part(part.line, part.width, first) for part in self.parts]
         self.show_parts(moved, self.row)
         return True
 
@@ -277,22 +226,20 @@ class Surface(Explored):
         if not self.rows:
             self.device.give(ReadLine(self.end_mm))
             return
-        pitch_mm, lines = self.style.geometry.line_pitch_mm, len(self.parts)
-        longest = max(len(part) for part in self.parts if part is not None)
-        end_mm = self.style.geometry.extent_mm(longest)
-        below_mm = self.display.height_mm - lines * pitch_mm
-        foot_mm = min(below_mm, (_below_pitches(self.style) + 0.5) * pitch_mm)
-        self.device.give(ReadPage(lines, pitch_mm, end_mm, foot_mm * self.by_hand))
+        geometry, lines = self.style.geometry, len(self.parts)
+        end_mm = geometry.extent_mm(max(len(part) for part in self.parts if part is not None))
+        below_mm = self.display.height_mm - lines * geometry.line_pitch_mm
+        foot_mm = min(below_mm, (_below_pitches(self.style) + 0.5) * geometry.line_pitch_mm)
+        self.device.give(ReadPage(lines, geometry.line_pitch_mm, end_mm, foot_mm * self.by_hand))
 
     def _render(self) -> None:
-        self.figured = False
         if self.rows:
-            program = self.style.render_page(self.masks, self.display)
+            blank = np.zeros(0, np.uint8)
+            masks = [blank if part is None else part.masks for part in self.parts]
+            program = self.style.render_page(masks, self.display)
         else:
             program = self.style.render(self.part.masks, self.display)
         self.device.put(program, self.number)
-        if self.figures is not None:
-            self.figures.place(self)
 
     # What the hand does
 
@@ -310,54 +257,39 @@ class Surface(Explored):
 
     def track(self, ticks: NDArray[np.void]) -> Followed | None:
         """Look where the hand went; None if nothing of what is shown was to be felt."""
-        felt = ticks[(ticks["line"] == self.number) & (ticks["flags"] & _PAUSED == 0)]
-        if self.rows and ticks.size and not math.isnan(ticks["y_mm"][-1]):
-            self.finger_row = self._row_of(ticks[-1])
+        shown = ticks[ticks["line"] == self.number]
+        if self.rows and shown.size and not math.isnan(shown["y_mm"][-1]):
+            self._finger_row = int(shown["part"][-1])
+        felt = shown[shown["flags"] & _PAUSED == 0]
         on = felt[felt["flags"] & _UNFELT == 0]
         if not on.size:  # it is paused, or the device was away or at rest by itself
             self._below_ns = 0
             return Followed() if felt.size else None
-        reached, done = self._follow_line(on["x_mm"])
-        if not self.rows:
-            return Followed(reached=reached, done=done)
-        return self._follow_page(int(on["time_ns"][-1]), reached=reached)
-
-    def _follow_line(self, x_mm: NDArray[np.float64]) -> tuple[bool, bool]:
-        """Tell whether the hand has come to the line's end now, and whether it is done with it."""
+        x_mm, was_reached = on["x_mm"], self.reached
         if not self._left:  # a hand that was at the end when the line came has not read it
             before = np.flatnonzero(x_mm < self.end_mm)
             self._left = bool(before.size)
             x_mm = x_mm[before[0] :] if before.size else x_mm[:0]
-        was_reached = self.reached
         done = self._end.find(x_mm) is not None
         self.reached = self._end.reached
-        return self.reached and not was_reached, done
+        followed = Followed(reached=self.reached and not was_reached, done=done)
+        return self._follow_page(int(on["time_ns"][-1]), followed) if self.rows else followed
 
-    def _follow_page(self, now_ns: int, *, reached: bool) -> Followed:
-        row = self.finger_row
+    def _follow_page(self, now_ns: int, along: Followed) -> Followed:
+        """Look which row of a page the finger is in, or whether it stays below the last."""
+        row, on_line = self._finger_row, along._replace(done=False)
         if row < len(self.parts):
             self._begun, self._below_ns = self._begun or row >= 0, 0
         elif self._begun:
             self._below_ns = self._below_ns or now_ns
-            return Followed(reached=reached, done=now_ns - self._below_ns >= _BELOW_NS)
-        while 0 < row < len(self.parts) and self.parts[row] is None:
-            row -= 1  # from a figure to its line
+            return along._replace(done=now_ns - self._below_ns >= _BELOW_NS)
         if row != self._near:
             self._near, self._near_ns = row, now_ns
         there = 0 <= row < len(self.parts) and self.parts[row] is not None
         if row == self.row or not there or now_ns - self._near_ns < _ON_NS:
-            return Followed(reached=reached)
+            return on_line
         self._enter(row)
         return Followed(line=True)
-
-    def _row_of(self, tick: np.void) -> int:
-        """Row that the finger is in; with figures, which have no rows, by its place alone."""
-        if not self.figured and int(tick["line"]) == self.number:
-            return int(tick["part"])
-        at = float(tick["y_mm"]) / self.style.geometry.line_pitch_mm
-        if abs(at - self.finger_row - 0.5) <= 0.5 + self.style.straying.band / 2:
-            return self.finger_row
-        return math.floor(at)
 
 
 def _below_pitches(style: BrailleStyle) -> float:

@@ -198,7 +198,7 @@ class Tuning(Explored):
         else:
             self.refuse("nothing to undo")
 
-    @both_ways("line", "n down p up", first=True, where=Where.TUNING)
+    @both_ways("line", "n down | p up", first=True, where=Where.TUNING)
     def line(self, step: int) -> None:
         """Read the next line, or the one before."""
         line = self.reader.beside(step)

@@ -55,7 +55,6 @@ def read(ctx: click.Context, number: int = 1) -> None:
     from vbraille.cli.printing import say
     from vbraille.cli.settings import save_profile, settings_of
     from vbraille.knobs import profile_values
-    from vbraille.layout import Layout, cells_per_line
     from vbraille.reading.places import Places, places_path
     from vbraille.reading.reader import Reader
     from vbraille.render import MODELS
@@ -84,7 +83,6 @@ def read(ctx: click.Context, number: int = 1) -> None:
         model = find_model(ctx, device, wanted)
         spoken = _spoken(chosen["language"], book)
         equipment.start(ctx, model, language=spoken, table=book.table)
-        width = chosen["cells"] or cells_per_line(model.style.geometry, model.display)
 
         def save(style):
             settings = settings_of(ctx)
@@ -94,22 +92,22 @@ def read(ctx: click.Context, number: int = 1) -> None:
             return f"profile {settings.profile}: saved"
 
         reader = Reader(
-            Layout(book, width),
+            book,
             device,
             equipment.outputs,
             kept,
             lines=chosen["lines"],
-            fixed=bool(chosen["cells"]),
+            cells=chosen["cells"],
             key_set=chosen["keys"],
             attended=equipment.keyboard.attached,
             by_hand=chosen["advance"] == "return",
             echo=echo,
-            figures=_figures(ctx, book, device),
+            figures=_figures(ctx, book, model.style),
             save=save,
             changed=_changes(file, lambda: build_book(ctx, file)),
         )
         written = "braille as it is" if book.table is None else book.table.said
-        say(f"line width: {count(width, 'cell')}, {written}", aside=True)
+        say(f"line width: {count(reader.layout.width, 'cell')}, {written}", aside=True)
         reader.begin()
         try:
             equipment.explore(ctx, reader, own=True)
@@ -174,15 +172,10 @@ def _spoken(asked: str | None, book: Any) -> str:
     return asked or book.source.language or (info.language if info else "") or "en"
 
 
-def _figures(ctx: click.Context, book: Any, device: Any) -> Any:
-    """Figures of a book that shows them; None for others."""
-    from vbraille.cli.printing import say
+def _figures(ctx: click.Context, book: Any, style: Any) -> Any:
+    """Figures of a book: in its container, or in the folder that it stands in."""
     from vbraille.reading.figures import BookFigures
 
     in_container = book.source.form == "epub"
-    return BookFigures(
-        book.source,
-        None if in_container else Path(ctx.params["file"]).parent,
-        lambda: device.model.style,
-        lambda sentence: say(sentence, aside=True),
-    )
+    folder = None if in_container else Path(ctx.params["file"]).parent
+    return BookFigures(book.source, folder, style)

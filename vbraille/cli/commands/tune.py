@@ -28,7 +28,6 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     from vbraille.cli.exploring import equipped, find_model, refuse_terminal
     from vbraille.cli.settings import save_profile, settings_of
     from vbraille.knobs import profile_values
-    from vbraille.layout import Layout, cells_per_line
     from vbraille.reading.places import Places
     from vbraille.reading.reader import Reader
     from vbraille.reading.tuning import Tuning, practice_text
@@ -47,9 +46,8 @@ def command(ctx: click.Context, **chosen: Any) -> None:
         device = equipment.device
         model = find_model(ctx, device, asked)
         equipment.start(ctx, model, language=chosen["language"] or "en")
-        width = cells_per_line(model.style.geometry, model.display)
         reader = Reader(
-            Layout(Book(source, table), width),
+            Book(source, table),
             device,
             equipment.outputs,
             Places(None, equipment.say).book("", Path(), ""),

@@ -77,18 +77,18 @@ export class Sheet {
     this.#state = state;
     const width = this.still.parentElement.clientWidth;
     if (!state?.array || !width) return;
-    const { array, lines, figures } = state;
+    const { array, lines } = state;
     const d = distances(state);
     const half = (array.columns * array.column_pitch_mm) / 2;
     const start = Math.min(0, ...lines.map((line) => line.start_mm));
-    const ends = d && lines.length ? [0, ...lines.map((line) => endOf(d, line)), ...figures.map((one) => one.width_mm - one.left_mm)] : [array.travel_mm];
+    const ends = d && lines.length ? [0, ...lines.map((line) => endOf(d, line))] : [array.travel_mm];
     const right = Math.max(...ends) + 0.6 * half;
     const pad_px = width < 560 ? 40 : 62;
     const fit = (width - pad_px - RIGHT_PX) / (right - start + half);
     const px_mm = (this.#px_mm = clamp(fit, LEAST_PX_MM, MOST_PX_MM));
     this.span = { from: start - half, right, pad: pad_px / px_mm, start };
     const first = lines.length ? Math.min(...lines.map((line) => line.top_mm)) : 0;
-    const bottoms = [...lines.map((line) => line.top_mm + (d ? d.line + this.#below(d) : 0)), ...figures.map((one) => one.height_mm - one.top_mm)];
+    const bottoms = lines.map((line) => line.top_mm + (d ? d.line + this.#below(d) : 0));
     const alone = array.height_mm || state.scene?.height_mm || array.rows * array.row_pitch_mm + 6;
     const tall = Math.max(...bottoms.map((bottom) => bottom - first), d?.line ?? 0, lines.length ? array.height_mm : alone);
     this.#most = lines.length && this.#most < 3 * tall ? Math.max(this.#most, tall) : tall;
@@ -109,7 +109,7 @@ export class Sheet {
       const reach = { width: Math.max(state.array.travel_mm, 1), height: state.array.height_mm || state.scene.height_mm };
       group.append(svg("svg", { ...reach, overflow: "hidden" }, picture(state.scene)));
     }
-    group.append(...state.figures.map(picture), ...(d ? state.lines.map((line) => this.#line(d, line)) : []));
+    group.append(...(d ? state.lines.map((line) => this.#line(d, line)) : []));
     group.append(ruler(Math.floor(start / 10) * 10, right, first - 6 * px, false, this.#px_mm));
     this.side = ruler(first, first + this.#most, 0, true, this.#px_mm);
     const margin = { x: 8 * px - pad, y: first - TOP_PX * px, width: pad - 4 * px, height: this.#view.high };
