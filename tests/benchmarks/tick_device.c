@@ -1,6 +1,8 @@
-/* A controller at a pseudo-terminal that measures how long after each of its STATEs a FRAME comes. It prints them all,
-   in ns, once the line SECONDS is over: ./device LINK SECONDS */
+/* A controller at a pseudo-terminal, or at a socket of this computer if PLACE is a port, that measures how long after
+   each of its STATEs a FRAME comes. It prints them all, in ns, once SECONDS are over: ./device PLACE SECONDS */
 #define _GNU_SOURCE
+#include <arpa/inet.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,17 +34,31 @@ uint8_t vb_send(const uint8_t *bytes, uint8_t count) {
 }
 void vb_drive(const vb_level *levels) { (void)levels; }
 
-int main(int count, char **words) {
-  if (count < 3) return 2;
-  port = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
-  if (port < 0 || grantpt(port) || unlockpt(port)) return 1;
-  int other = open(ptsname(port), O_RDWR | O_NOCTTY);
+static int terminal(const char *link) {
+  int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  if (master < 0 || grantpt(master) || unlockpt(master)) return -1;
+  int other = open(ptsname(master), O_RDWR | O_NOCTTY);
   struct termios mode;
   tcgetattr(other, &mode);
   cfmakeraw(&mode);
   tcsetattr(other, TCSANOW, &mode);
-  unlink(words[1]);
-  if (symlink(ptsname(port), words[1])) return 1;
+  unlink(link);
+  return symlink(ptsname(master), link) ? -1 : master;
+}
+static int connection(int number) {
+  struct sockaddr_in at = { .sin_family = AF_INET, .sin_port = htons((uint16_t)number), .sin_addr.s_addr = htonl(INADDR_LOOPBACK) };
+  int yes = 1, listening = socket(AF_INET, SOCK_STREAM, 0);
+  setsockopt(listening, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  if (bind(listening, (struct sockaddr *)&at, sizeof at) || listen(listening, 1)) return -1;
+  int link = accept4(listening, NULL, NULL, SOCK_NONBLOCK);
+  setsockopt(link, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  return link;
+}
+
+int main(int count, char **words) {
+  if (count < 3) return 2;
+  port = atoi(words[1]) ? connection(atoi(words[1])) : terminal(words[1]);
+  if (port < 0) return 1;
   int timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK);
   struct itimerspec each = { { 0, 1000000 }, { 0, 1000000 } };
   timerfd_settime(timer, 0, &each, NULL);

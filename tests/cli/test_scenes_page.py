@@ -9,8 +9,15 @@ from pathlib import Path
 import pytest
 
 from tests.scene.keyspage import BEGIN, END, PAGE, keys_text
-from vbraille.scene.reading import MOST_BYTES, MOST_FILES, open_scene
-from vbraille.scene.resolving import MOST_DEPTH, MOST_DOTS, MOST_PATTERNS, MOST_POINTS
+from vbraille.scene.reading import (
+    MOST_BYTES,
+    MOST_DEPTH,
+    MOST_DOTS,
+    MOST_FILES,
+    MOST_PATTERNS,
+    MOST_POINTS,
+    open_scene,
+)
 from vbraille.scene.stock import stock_textures
 
 ROOT = PAGE.parents[1]

@@ -26,7 +26,7 @@ from vbraille.scene.patterns import (
     VertexMarkers,
     Vibration,
 )
-from vbraille.scene.resolving import resolve
+from vbraille.scene.reading import resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.signals import Inverse, Pulse, Speed, Switch
 

@@ -1,4 +1,4 @@
-"""Dots of images: where they stand, how large and high they are, and that none overlap."""
+"""Dots of images: where they stand, and how large and high they are."""
 
 import math
 
@@ -9,7 +9,7 @@ from PIL import Image as Pillow
 from vbraille.errors import InputError
 from vbraille.scene.images import dots_of
 from vbraille.scene.patterns import Dots, DotStyle, Group, ImageDots, Vibration
-from vbraille.scene.resolving import resolve
+from vbraille.scene.reading import resolve
 from vbraille.scene.scene import Canvas, Scene
 
 
@@ -93,12 +93,7 @@ def test_the_early_grid_has_94_by_33_dots(tmp_path):
     assert len(ys) == 33
 
 
-FOUR = DotStyle(radius_mm=4)
 BAD = {
-    "overlap, at 10.0, 5.0 mm and at 17.0, 5.0 mm": (
-        discs((100, 50, 30, 255), (170, 50, 30, 255)),
-        {"by_area": False, "dot": FOUR},
-    ),
     "nothing in its image is above": (np.zeros((5, 5)), {}),
     "smaller than a cell": (np.ones((5, 5)), {"cell_mm": (50.0, 50.0)}),
     "has 22500 blobs": (np.tile([[255, 0], [0, 0]], (150, 150)), {}),

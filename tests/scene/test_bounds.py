@@ -112,12 +112,6 @@ def test_an_image_that_is_up_outside_is_everywhere():
     assert opaque(Bitmap(pixels, (0, 0), 2, 2, 0.1)).outside == 1
 
 
-@pytest.mark.parametrize("size", [(np.nan, 5.0), (5.0, np.inf), (0.0, 5.0), (5.0, 1e-300)])
-def test_a_bitmap_of_no_size_is_refused_where_it_is_made(size):
-    with pytest.raises(ValueError, match=r"of a bitmap is .* mm; it must be 0\.01 to 100000 mm"):
-        Bitmap(np.zeros((2, 2), np.uint16), (0, 0), *size)
-
-
 def test_an_images_box_is_no_larger_than_its_mask():
     image = Image(file="whole.png", place_mm=(10, 20), width_mm=11, height_mm=7)
     # One pixel of 1 mm for the edge, of which half a pixel is still bilinear beyond its middle.

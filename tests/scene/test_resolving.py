@@ -24,7 +24,7 @@ from vbraille.scene.patterns import (
     Use,
     Vibration,
 )
-from vbraille.scene.resolving import MOST_DEPTH, resolve
+from vbraille.scene.reading import MOST_DEPTH, resolve
 from vbraille.scene.scene import Canvas, Scene
 from vbraille.scene.traversal import ONE, SEVERAL, moved, with_children
 

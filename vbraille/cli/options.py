@@ -7,20 +7,21 @@ was not given: what then holds is with the work of the command.
 from __future__ import annotations
 
 import math
+import re
 from difflib import get_close_matches
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import click
 from click.shell_completion import CompletionItem
 
-from vbraille.cli.settings import use_settings
+from vbraille.cli.settings import SHARED, Context
 from vbraille.knobs import KNOBS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable
 
 FIRST = "Options"  # the group that `--help` prints; `--help-all` prints every group
-SHARED: set[str] = set()  # names of the options of this module
 
 
 class Option(click.Option):
@@ -37,30 +38,20 @@ class Command(click.Command):
     ``--help`` lists the options without a group, and ``--help-all`` all of them.
     """
 
+    context_class = Context
+
     def __init__(self, *names: Any, **how: Any) -> None:
         super().__init__(*names, **how)
-        self.params += [_help_all(), _log()]
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse, with the settings file for what is not given."""
-        names = {param.name for param in self.params}
-        if "settings" in names and not ctx.resilient_parsing:
-            typed, _, _ = self.make_parser(ctx).parse_args(list(args))
-            chosen = {
-                param.name: param.consume_value(ctx, typed)[0]
-                for param in self.params
-                if param.name in ("settings", "profile")
-            }
-            root = ctx.find_root().command
-            commands = root.list_commands(ctx) if isinstance(root, click.Group) else ()
-            use_settings(
-                ctx,
-                _text(chosen.get("settings")),
-                _text(chosen.get("profile")),
-                commands,
-                SHARED,
-            )
-        return super().parse_args(ctx, args)
+        self.params += [
+            Option(
+                ["--help-all"], is_flag=True, is_eager=True, expose_value=False,
+                callback=_show_all, help="Show all options, in groups.",
+            ),
+            Option(
+                ["--log"], metavar="FILE", expose_value=False, callback=_keep_log,
+                help="Append a log to a file; - for stderr.", group="For developers",
+            ),
+        ]  # fmt: skip
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the first options, or all of them in groups."""
@@ -75,13 +66,27 @@ class Command(click.Command):
                 formatter.write_dl(records, col_max=26)
 
 
+def _show_all(ctx: click.Context, _param: click.Parameter, value: bool) -> None:
+    if value and not ctx.resilient_parsing:
+        ctx.meta["vbraille.help_all"] = True
+        click.echo(ctx.get_help())
+        ctx.exit()
+
+
+def _keep_log(ctx: click.Context, _param: click.Parameter, value: str | None) -> None:
+    if value is not None and not ctx.resilient_parsing:
+        from vbraille.logs import keep
+
+        keep(value)
+
+
 class Group(click.Group):
-    """A command that has actions."""
+    """A command that has actions, listed in the order of their making."""
 
     command_class = Command
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
-        """Names of the actions, in the order of their making."""
+        """Names of the actions."""
         return list(self.commands)
 
     def resolve_command(
@@ -108,7 +113,7 @@ class Number(click.ParamType):
     Parameters
     ----------
     low, high
-        Bounds; None for none.
+        Bounds.
     kind
         float or int.
     """
@@ -122,29 +127,21 @@ class Number(click.ParamType):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Convert a text or a number of a file."""
         try:
-            number = self.kind(value)
-            wrong = isinstance(value, bool) or not math.isfinite(number) or number != float(value)
-        except (TypeError, ValueError, OverflowError):
-            wrong, number = True, 0
-        if wrong:
+            number = self.kind(str(value))
+        except ValueError:
+            number = math.nan
+        if not math.isfinite(number):
             what = "a whole number" if self.kind is int else "a number"
             self.fail(f"{value!r} is not {what}", param, ctx)
-        if self.low is not None and number < self.low:
-            self.fail(f"{number:g} is not {self._range()}", param, ctx)
-        if self.high is not None and number > self.high:
-            self.fail(f"{number:g} is not {self._range()}", param, ctx)
+        low, high = self.low, self.high
+        if (low is not None and number < low) or (high is not None and number > high):
+            within = f"{low:g} or more" if high is None else f"{low:g} to {high:g}"
+            self.fail(f"{number:g} is not {within}", param, ctx)
         return number
 
     def get_metavar(self, param: click.Parameter, ctx: click.Context | None = None) -> str | None:  # noqa: ARG002
         """The range, for help."""
-        if self.low is None or self.high is None:
-            return "N"
-        return f"{self.low:g}…{self.high:g}"
-
-    def _range(self) -> str:
-        if self.high is None:
-            return f"{self.low:g} or more"
-        return f"at most {self.high:g}" if self.low is None else f"{self.low:g} to {self.high:g}"
+        return "N" if self.low is None or self.high is None else f"{self.low:g}…{self.high:g}"
 
 
 def whole(low: int | None = None, high: int | None = None) -> Number:
@@ -158,19 +155,23 @@ class Known(click.ParamType):
     Parameters
     ----------
     what
-        Noun for what a name names, such as "table".
-    load
-        Function that returns the names.
+        Noun for what a name names, such as "mapping".
+    module, names
+        Module that has the names, and its collection of them.
     """
 
     name = "name"
 
-    def __init__(self, what: str, load: Callable[[], Iterable[str]]) -> None:
-        self.what, self.load = what, load
+    def __init__(self, what: str, module: str, names: str) -> None:
+        self.what, self.module, self.names = what, module, names
+
+    def load(self) -> list[str]:
+        """Load the names."""
+        return list(getattr(import_module(self.module), self.names))
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Check that a name is known."""
-        names = list(self.load())
+        names = self.load()
         if value in names:
             return value
         near = get_close_matches(str(value), names, 3)
@@ -187,45 +188,24 @@ class Known(click.ParamType):
         return [CompletionItem(name) for name in self.load() if name.startswith(incomplete)]
 
 
-class Lines(click.ParamType):
-    """A range of lines such as 3-10, 7 or 5-: the first and the last, which may be None."""
-
-    name = "lines"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Convert a text."""
-        if isinstance(value, tuple):
-            return value
-        first, dash, last = str(value).partition("-")
-        digits = [part for part in (first, last) if part]
-        if not digits or not all(part.isdecimal() and len(part) < 16 for part in digits):
-            self.fail(f"{value!r} is not a range of lines such as 3-10", param, ctx)
-        low = int(first or 1)
-        high = int(last) if last else None if dash else low
-        if low < 1 or (high is not None and high < low):
-            self.fail(f"{value!r} is not a range of lines such as 3-10; lines count from 1",
-                      param, ctx)  # fmt: skip
-        return low, high
+def line_range(text: str) -> tuple[int, int | None]:
+    """Lines such as 3-10, 7 or 5-: the first, and the last, which may be None."""
+    found = re.fullmatch(r"(\d{0,15})(-?)(\d{0,15})", text, re.ASCII)
+    if found and (found[1] or found[3]):
+        first = int(found[1] or 1)
+        last = int(found[3]) if found[3] else None if found[2] else first
+        if 1 <= first <= (last or first):
+            return first, last
+    raise click.BadParameter(f"{text!r} is not a range of lines such as 3-10; lines count from 1")
 
 
-class Duration(click.ParamType):
-    """A time such as 200ms or 5s; in seconds."""
-
-    name = "duration"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Convert a text."""
-        if isinstance(value, float):
-            return value
-        text = str(value)
-        number, unit = (text[:-2], 0.001) if text.endswith("ms") else (text[:-1], 1.0)
-        try:
-            seconds = float(number) * unit if text.endswith("s") else math.nan
-        except ValueError:
-            seconds = math.nan
-        if not 0.001 <= seconds <= 3600:
-            self.fail(f"{value!r} is not a time from 1ms to 3600s, such as 200ms", param, ctx)
-        return seconds
+def seconds(text: str) -> float:
+    """Seconds of a time such as 200ms or 5s."""
+    found = re.fullmatch(r"(\d*\.?\d+)(m?)s", text, re.ASCII)
+    time_s = float(found[1]) / (1000 if found[2] else 1) if found else math.inf
+    if time_s > 3600:
+        raise click.BadParameter(f"{text!r} is not a time up to 3600s, such as 200ms")
+    return time_s
 
 
 def option(*names: str, **how: Any) -> Callable:
@@ -260,58 +240,6 @@ def _shared(*names: str, **how: Any) -> Callable:
     return option(*names, **how)
 
 
-def _text(value: object) -> str | None:
-    return value if isinstance(value, str) else None
-
-
-def _show_all(ctx: click.Context, _param: click.Parameter, value: bool) -> None:
-    if value and not ctx.resilient_parsing:
-        ctx.meta["vbraille.help_all"] = True
-        click.echo(ctx.get_help())
-        ctx.exit()
-
-
-def _help_all() -> Option:
-    how = {"is_flag": True, "is_eager": True, "expose_value": False, "callback": _show_all}
-    return Option(["--help-all"], help="Show all options, in groups.", **how)
-
-
-def _keep_log(ctx: click.Context, _param: click.Parameter, value: str | None) -> None:
-    if value is not None and not ctx.resilient_parsing:
-        from vbraille.logs import keep
-
-        keep(value)
-
-
-def _log() -> Option:
-    how = {"expose_value": False, "callback": _keep_log, "group": "For developers"}
-    return Option(["--log"], metavar="FILE", help="Append a log to a file; - for stderr.", **how)
-
-
-def _models() -> Iterable[str]:
-    from vbraille.render import MODELS
-
-    return MODELS
-
-
-def _mappings() -> Iterable[str]:
-    from vbraille.render import MAPPINGS
-
-    return MAPPINGS
-
-
-def _geometries() -> Iterable[str]:
-    from vbraille.braille.geometry import PRESETS
-
-    return PRESETS
-
-
-def _tables() -> Iterable[str]:
-    from vbraille.translate import list_tables
-
-    return (table.name for table in list_tables())
-
-
 def _knob(name: str, help: str) -> Callable:  # noqa: A002 - click's word
     knob = KNOBS[name]
     kind = Number(knob.low, knob.high, knob.kind)
@@ -332,7 +260,7 @@ optional_file = click.argument("file", type=click.Path(allow_dash=True), require
 language = _shared("--language", metavar="TAG", help="Language of the text, such as fr or pt-BR.")
 grade = _shared("--grade", type=whole(0, 9), metavar="N",
                 help="Grade: 0 or 1 uncontracted, 2 and up contracted.")  # fmt: skip
-lines = option("--lines", type=Lines(), metavar="3-10", default=(1, None),
+lines = option("--lines", type=line_range, metavar="3-10", default="1-",
                help="Lines of the page, from 1.")  # fmt: skip
 table = _shared("--table", metavar="NAME", help="Translation table of liblouis.", **_TEXT)
 encoding = _shared("--encoding", metavar="NAME", help="Text encoding of the file.", **_TEXT)
@@ -356,16 +284,17 @@ dot_width = _knob("dot_width", "Width of a dot along the line.")
 dot_spacing = _knob("dot_spacing", "Distance between the dot columns of a cell.")
 cell_gap = _knob("cell_gap", "Distance between the dots of neighbouring cells.")
 line_pitch = _knob("line_pitch", "Distance between lines.")
-mapping = _shared("--mapping", type=Known("mapping", _mappings), metavar="NAME",
+mapping = _shared("--mapping", type=Known("mapping", "vbraille.render", "MAPPINGS"), metavar="NAME",
                   help="Rows of actuators that show each row of dots.", **_FEEL)  # fmt: skip
 dot_row = _shared("--dot-row", type=whole(1, 3), help="Row of dots that a VBD shows.", **_FEEL)
-geometry = _shared("--geometry", type=Known("geometry", _geometries), metavar="NAME",
-                   help="Distances to start from: a display's, or paper.", **_FEEL)  # fmt: skip
+geometry = _shared("--geometry", type=Known("geometry", "vbraille.braille.geometry", "PRESETS"),
+                   metavar="NAME", help="Distances to start from: a display's, or paper.",
+                   **_FEEL)  # fmt: skip
 
 # Device and hand
 device = _shared("--device", metavar="SPEC", default="sim", show_default=True,
                  help="Device: serial:PORT, latero:HOST or sim.")  # fmt: skip
-model = _shared("--model", type=Known("display model", _models), metavar="NAME",
+model = _shared("--model", type=Known("display model", "vbraille.render", "MODELS"), metavar="NAME",
                 help="Display model; any other device is rejected.", **_DEVICE)  # fmt: skip
 travel = _shared("--travel", type=Number(1, 10_000), metavar="MM",
                  help="Travel of the carriage; sets the line length.", **_DEVICE)  # fmt: skip
@@ -405,9 +334,9 @@ host = option("--host", metavar="ADDRESS", help="Address of the live view, to sh
 port = option("--port", type=whole(0, 65_535), help="Port of the live view.", **_VIEW)
 
 # Places and settings
-profile = _shared("--profile", metavar="NAME", help="Profile of the settings file.")
-settings = option("--settings", type=click.Path(), metavar="FILE", help="Settings file to use.",
-                  **_KEPT)  # fmt: skip
+profile = _shared("--profile", metavar="NAME", is_eager=True, help="Profile of the settings file.")
+settings = option("--settings", type=click.Path(), metavar="FILE", is_eager=True,
+                  help="Settings file to use.", **_KEPT)  # fmt: skip
 no_places = _shared("--no-places", is_flag=True, help="Start at the top; keep no place.", **_KEPT)
 
 # What a command prints or writes

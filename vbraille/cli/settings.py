@@ -8,6 +8,7 @@ those of ``[profile.evening]`` for all commands with that profile, and those of
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -20,8 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection
     from pathlib import Path
 
-_META = "vbraille.settings"
-_TABLES = ("profile", "keys", "buttons")
+SHARED: set[str] = set()  # names of the options that a settings file may have
 # Options of which a display may have values of its own.
 STYLE = (
     *("texture", "contrast", "texture_cycles", "dot_width", "dot_spacing", "cell_gap"),
@@ -29,7 +29,7 @@ STYLE = (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Settings:
     """A settings file that was read.
 
@@ -37,26 +37,25 @@ class Settings:
     ----------
     path
         Path of the file, which need not be there.
-    profile
-        Name of the profile in use.
     tree
         All of its tables.
     lines
         Number of the line of each value, by the keys that lead to it.
-    origins
-        Keys that lead to the value of each option of the command.
+    profile
+        Name of the profile in use.
+    values
+        Value of each option of the command, and its place in the file.
     """
 
     path: Path
-    profile: str = "default"
     tree: dict[str, Any] = field(default_factory=dict)
     lines: dict[tuple[str | int, ...], int] = field(default_factory=dict)
-    origins: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    profile: str = "default"
+    values: dict[str, tuple[Any, str]] = field(default_factory=dict)
 
     def where(self, *keys: str) -> str:
         """File and line of a value, such as "settings.toml line 12"."""
-        line = self.lines.get(keys)
-        return self.path.name if line is None else f"{self.path.name} line {line}"
+        return self.path.name + (f" line {self.lines[keys]}" if keys in self.lines else "")
 
     def table(self, *keys: str) -> dict[str, Any]:
         """A table of the file; empty if it is not there.
@@ -70,75 +69,91 @@ class Settings:
         for depth, key in enumerate(keys, 1):
             found = found.get(key, {})
             if not isinstance(found, dict):
-                raise InputError(
-                    f"{self.where(*keys[:depth])}: {key} is not a table; write [{'.'.join(keys)}]"
-                )
+                place = self.where(*keys[:depth])
+                raise InputError(f"{place}: {key} is not a table; write [{'.'.join(keys)}]")
         return found
 
+    def options(self, known: Collection[str], *keys: str) -> dict[str, tuple[Any, str]]:
+        """Options of a table of the file by their names: the value of each, and its place.
 
-def use_settings(
-    ctx: click.Context,
-    path: str | None,
-    profile: str | None,
-    commands: Collection[str],
-    known: Collection[str],
-) -> None:
-    """Have a command take options that are not given from the settings file.
+        Raises
+        ------
+        InputError
+            If one is not known; the sentence names what comes near.
+        """
+        found = {}
+        profile = f", profile {keys[1]}" if keys[:1] == ("profile",) else ""
+        for key, value in self.table(*keys).items():
+            if not isinstance(value, dict):
+                self.check((*keys, key), known, "option")
+                found[_named(key)] = value, self.where(*keys, key) + profile
+        return found
 
-    Parameters
-    ----------
-    ctx
-        Context of the command, before its options are parsed.
-    path
-        Value of ``--settings``; None for the usual file.
-    profile
-        Value of ``--profile``; None for that of the file, or "default".
-    commands
-        Names of all commands.
-    known
-        Names of all options that commands share.
+    def check(self, keys: tuple[str, ...], known: Collection[str], what: str) -> None:
+        """Raise InputError if the last of some keys is not known."""
+        if _named(keys[-1]) in known:
+            return
+        from difflib import get_close_matches
 
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or has an unknown name.
-    """
-    settings = read_settings(path)
-    command = (ctx.command_path.split() or ["", ""])[1]
-    own = {param.name or "" for param in ctx.command.params}
-    origins: dict[str, tuple[str, ...]] = {}
-    for name, value in settings.tree.items():
-        if isinstance(value, dict):
-            _check_name(settings, (name,), [*_TABLES, *commands], "table")
-        else:
-            _check_name(settings, (name,), known, "option")
-            origins[_named(name)] = (name,)
-    for key in settings.table(command):
-        _check_name(settings, (command, key), own, "option")
-        origins[_named(key)] = (command, key)
-    wanted = profile or settings.table(command).get("profile")
-    profile = str(wanted or "default")
-    if wanted is not None and wanted not in settings.table("profile") and _META not in ctx.meta:
-        click.echo(f"profile {wanted}: not saved yet", err=True)
-    for key, value in settings.table("profile", profile).items():
-        if isinstance(value, dict):
-            for each in value:
-                _check_name(settings, ("profile", profile, key, each), STYLE, "option")
-        else:
-            _check_name(settings, ("profile", profile, key), known, "option")
-            origins[_named(key)] = ("profile", profile, key)
-    ctx.default_map = {name: _value(settings, keys) for name, keys in origins.items()}
-    ctx.meta[_META] = Settings(settings.path, profile, settings.tree, settings.lines, origins)
+        near = get_close_matches(_named(keys[-1]), known, 1)
+        hint = f"; did you mean {near[0]!r}?" if near else ""
+        table = f"[{'.'.join(keys[:-1])}] " if keys[:-1] else ""
+        raise InputError(f"{self.where(*keys)}: {table}unknown {what} {keys[-1]!r}{hint}")
 
 
-def read_settings(path: str | None) -> Settings:
-    """Read a settings file; the usual one need not be there.
+class Context(click.Context):
+    """The context of a command, whose options the settings file has where they are not given."""
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, or is not TOML.
-    """
+    @cached_property
+    def settings(self) -> Settings:
+        """The settings file, as ``--settings`` and ``--profile`` choose.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read, or has an unknown name.
+        """
+        # An option that is not given is a mark of click's own until all are read.
+        path, profile = (
+            value if isinstance(value, str) else None
+            for value in (self.params.get("settings"), self.params.get("profile"))
+        )
+        found = _read(path)
+        command, root = self.info_name or "", self.find_root().command
+        commands = root.list_commands(self) if isinstance(root, click.Group) else ()
+        for key, value in found.tree.items():
+            if isinstance(value, dict):
+                found.check((key,), ["profile", "keys", "buttons", *commands], "table")
+        values = found.options(SHARED)
+        values |= found.options({param.name or "" for param in self.command.params}, command)
+        profile = profile or values.get("profile", (None, ""))[0]
+        if profile and profile not in found.table("profile"):
+            click.echo(f"profile {profile}: not saved yet", err=True)
+        found.profile = str(profile or "default")
+        values |= found.options(SHARED, "profile", found.profile)
+        for display, value in found.table("profile", found.profile).items():
+            if isinstance(value, dict):
+                found.options(STYLE, "profile", found.profile, display)
+        found.values = values
+        return found
+
+    def lookup_default(self, name: str, call: bool = True) -> Any:
+        """Value of an option in the settings file; None if it has none."""
+        chooses = name in ("settings", "profile", "help_all", "log")
+        if not call or chooses or "settings" not in self.params or self.resilient_parsing:
+            return None
+        value, _ = self.settings.values.get(name, (None, ""))
+        return value
+
+
+def settings_of(ctx: click.Context) -> Settings:
+    """Settings of a command with ``--settings``."""
+    assert isinstance(ctx, Context)
+    return ctx.settings
+
+
+def _read(path: str | None) -> Settings:
+    """Read a settings file; the usual one need not be there."""
     found = settings_path(path)
     if path is None and not found.exists():
         return Settings(found)
@@ -149,25 +164,19 @@ def read_settings(path: str | None) -> Settings:
 
     text = read_text(found, "settings file")
     try:
-        tree = tomllib.loads(text)
+        return Settings(found, tomllib.loads(text), lines_of(text))
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f"{found.name} is not TOML: {error}") from None
-    return Settings(found, tree=tree, lines=lines_of(text))
-
-
-def settings_of(ctx: click.Context) -> Settings:
-    """Settings that a command with ``--settings`` was given."""
-    return ctx.meta[_META]
 
 
 def origin(ctx: click.Context, param: click.Parameter) -> str:
     """Origin of the value of an option, in words; empty for the command line and for defaults."""
-    source = ctx.get_parameter_source(param.name or "")
+    name = param.name or ""
+    source = ctx.get_parameter_source(name)
     if source is ParameterSource.ENVIRONMENT:
-        return f"environment variable {param.envvar or _variable(ctx, param)}"
-    if source is ParameterSource.DEFAULT_MAP and _META in ctx.meta:
-        settings: Settings = ctx.meta[_META]
-        return _said(settings, settings.origins[param.name or ""])
+        return f"environment variable {param.envvar or f'{ctx.auto_envvar_prefix}_{name.upper()}'}"
+    if source is ParameterSource.DEFAULT_MAP:
+        return settings_of(ctx).values[name][1]
     return ""
 
 
@@ -190,20 +199,18 @@ def style_options(ctx: click.Context, display: str) -> dict[str, tuple[Any, str]
 
     Raises
     ------
-    click.BadParameter
+    InputError
         If the profile has a value for the display that the option cannot have.
     """
-    settings = settings_of(ctx)
-    own = settings.table("profile", settings.profile, display)
-    values = {_named(key): (key, value) for key, value in own.items()}
+    settings, asked = settings_of(ctx), given(ctx)
+    own = settings.options(STYLE, "profile", settings.profile, display)
     found: dict[str, tuple[Any, str]] = {}
     for param in ctx.command.params:
         name = param.name or ""
         if name not in STYLE:
             continue
-        if name in values and name not in given(ctx):
-            key, value = values[name]
-            place = _said(settings, ("profile", settings.profile, display, key))
+        if name in own and name not in asked:
+            value, place = own[name]
             try:
                 found[name] = param.type.convert(value, param, ctx), place
             except click.BadParameter as error:
@@ -237,12 +244,10 @@ def save_profile(path: Path, profile: str, display: str, values: dict[str, Any])
     from vbraille.files import read_text, write_file
 
     path = path.resolve()  # a link to the file stays one
-    tree: Any = tomlkit.parse(read_text(path, "settings file") if path.exists() else "")
-    table = tree
+    table: Any = tomlkit.parse(read_text(path, "settings file") if path.exists() else "")
+    tree = table
     for step in ("profile", profile, display):
-        if step not in table:
-            table[step] = tomlkit.table(is_super_table=step != display)
-        table = table[step]
+        table = table.setdefault(step, tomlkit.table(is_super_table=step != display))
     table.update(values)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -251,39 +256,5 @@ def save_profile(path: Path, profile: str, display: str, values: dict[str, Any])
     write_file(path, tomlkit.dumps(tree).encode(), replace=True, durable=True)
 
 
-def _said(settings: Settings, keys: tuple[str, ...]) -> str:
-    """Words for a place in the file, such as "settings.toml line 4, profile evening"."""
-    profile = f", profile {keys[1]}" if keys[0] == "profile" and len(keys) > 1 else ""
-    return f"{settings.where(*keys)}{profile}"
-
-
-def _value(settings: Settings, keys: tuple[str, ...]) -> Any:
-    return settings.table(*keys[:-1])[keys[-1]]
-
-
 def _named(key: str) -> str:
     return key.replace("-", "_")
-
-
-def _variable(ctx: click.Context, param: click.Parameter) -> str:
-    return f"{ctx.auto_envvar_prefix}_{(param.name or '').upper()}"
-
-
-def _check_name(
-    settings: Settings, keys: tuple[str, ...], known: Collection[str], what: str
-) -> None:
-    """Check that a key of the file is known.
-
-    Raises
-    ------
-    InputError
-        If it is not; the sentence names what comes near.
-    """
-    if _named(keys[-1]) in known:
-        return
-    from difflib import get_close_matches
-
-    near = get_close_matches(_named(keys[-1]), known, 1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
-    table = f"[{'.'.join(keys[:-1])}] " if keys[:-1] else ""
-    raise InputError(f"{settings.where(*keys)}: {table}unknown {what} {keys[-1]!r}{hint}")

@@ -31,14 +31,11 @@ def pack(frame, top, out):
     out : uint8[bytes]
         Packed levels, least significant bit first.
     """
-    if top <= 255:
-        for n in range(frame.size):
-            out[n] = int(np.rint(frame.flat[n] * top))
-        return
+    bits = 8 if top <= 255 else 10
     held, count, at = 0, 0, 0  # bits that do not fill a byte yet, their number, and the next byte
     for n in range(frame.size):
         held |= int(np.rint(frame.flat[n] * top)) << count
-        count += 10
+        count += bits
         while count >= 8:
             out[at] = held & 0xFF
             held >>= 8

@@ -57,7 +57,8 @@ _ZERO_MM: Final = 1.0
 _RESIDUE: Final = 0x2144DF1C  # the CRC-32 of any body with its own CRC-32 behind it
 # The usual texture of the STReSS² asks for this share of the swing in a millisecond at this speed.
 _USUAL_SHARE, _USUAL_MM_S = 0.567, 70.0
-_STATE: Final = struct.Struct("<BHIiiiHB")  # without what `State.others` has
+_STATE: Final = struct.Struct("<BHIiiiHBB4sBB")  # without the analog inputs
+_OTHERS: Final = 7  # fields of a `State` that come before those that seldom change
 _NUMBERED: Final = struct.Struct("<BH")
 
 _Text = Annotated[str, msgspec.Meta(max_length=200)]
@@ -120,8 +121,12 @@ class Info(msgspec.Struct, frozen=True):
     @property
     def level_bytes(self) -> int:
         """Bytes that the levels of a FRAME take."""
-        count = self.rows * self.columns
-        return count if self.top <= 255 else (10 * count + 7) // 8
+        return (level_bits(self.top) * self.rows * self.columns + 7) // 8
+
+
+def level_bits(top: int) -> int:
+    """Bits of a level in a FRAME."""
+    return 8 if top <= 255 else 10
 
 
 def read_info(text: bytes) -> Info:
@@ -192,7 +197,7 @@ class Lines:
 
 
 class State(NamedTuple):
-    """Fields of a STATE, of which most come with each; see the protocol's page."""
+    """Fields of a STATE; see the protocol's page."""
 
     number: int
     time_us: int
@@ -201,27 +206,11 @@ class State(NamedTuple):
     turn: int
     taken: int
     flags: int
-    others: bytes  # buttons, four knobs, trips, dropped and the analog inputs
-
-    @property
-    def buttons(self) -> int:
-        """Buttons that are pressed, a bit each."""
-        return self.others[0]
-
-    @property
-    def knobs(self) -> bytes:
-        """Positions of four knobs."""
-        return self.others[1:5]
-
-    @property
-    def trips(self) -> int:
-        """Trips of the watchdog, modulo 256."""
-        return self.others[5]
-
-    @property
-    def dropped(self) -> int:
-        """Lines that the device dropped, modulo 256."""
-        return self.others[6]
+    buttons: int  # those that are pressed, a bit each
+    knobs: bytes  # positions of four
+    trips: int  # of the watchdog, modulo 256
+    dropped: int  # lines, modulo 256
+    analog: bytes
 
 
 def read_state(body: bytes) -> State | None:
@@ -229,12 +218,12 @@ def read_state(body: bytes) -> State | None:
     if not (29 <= len(body) <= 45 and len(body) % 2):
         return None
     _, *fields = _STATE.unpack_from(body)
-    return State(*fields, body[22:])  # pyright: ignore[reportCallIssue]
+    return State(*fields, body[_STATE.size :])  # pyright: ignore[reportCallIssue]
 
 
 def state_body(state: State) -> bytes:
     """Body of a STATE."""
-    return _STATE.pack(STATE, *state[:-1]) + state.others
+    return _STATE.pack(STATE, *state[:-1]) + state.analog
 
 
 def _frame(number: int, levels: bytes = b"") -> bytes:
@@ -477,7 +466,7 @@ class Conversation:
             self.events.append(Back())
         if last is None or state.taken != last.taken:
             self._took_us = self._time_us
-        if last is None or state.others != last.others:
+        if last is None or state[_OTHERS:] != last[_OTHERS:]:
             self._note_changes(state, last or state, now_ns)
         if state.flags & PLACED and abs(state.x / self.info.counts_per_mm[0]) < _ZERO_MM:
             self._zero_ns = 0  # ZERO was taken, and is repeated no more

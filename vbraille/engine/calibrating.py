@@ -30,10 +30,14 @@ _SWINGS_S = 4.0  # a second each
 
 
 class CalibrationRound:
-    """A round through the actuators of a device, which begins at the first.
+    """A round through the actuators of a device, which swing one after the other, from the first.
 
     Parameters
     ----------
+    device
+        Open device.
+    clock
+        Clock by which frames are due.
     found
         Calibration that the round changes.
 
@@ -43,22 +47,18 @@ class CalibrationRound:
         Whether the round is over.
     """
 
-    def __init__(self, found: Calibration) -> None:
-        self._device, self._gains = found.device, found.gains
-        self._number = 0
-        self.left = False
+    def __init__(self, device: Device, clock: Clock, found: Calibration) -> None:
+        self._device, self._clock, self._rate_hz = device, clock, device.display.rate_hz
+        self._name, self._gains = found.device, found.gains
+        self._number, self.left = 0, False
+        self._frame = np.zeros(device.display.shape)
+        self._left_s, self._due_ns = 0.0, clock.now_ns()
+        self._was = device.rested, device.taking
 
     @property
     def found(self) -> Calibration:
         """Calibration as it is now."""
-        return Calibration(self._device, self._gains.tolist())
-
-    @property
-    def shown(self) -> Calibration:
-        """Calibration by which the actuator in turn swings, even if it was found to be dead."""
-        gains = self._gains.copy()
-        gains[self.place] = gains[self.place] or 1.0
-        return Calibration(self._device, gains.tolist())
+        return Calibration(self._name, self._gains.tolist())
 
     @property
     def place(self) -> tuple[int, int]:
@@ -103,47 +103,19 @@ class CalibrationRound:
         self._number = (self._number + steps) % self._gains.size
         return [self.said() if steps else _said(gain)]
 
+    def swing(self) -> None:
+        """Have the actuator in turn swing out and back for some seconds, once all rest.
 
-def gains_said(calibration: Calibration) -> list[str]:
-    """Lines on what was found of a device's actuators."""
-    gains = calibration.gains
-    lines = []
-    for label, found in (("dead", gains == 0), ("inverted", gains < 0)):
-        places = [f"row {row + 1}, column {column + 1}" for row, column in np.argwhere(found)]
-        lines.append(f"{label}: {'; '.join(places) or 'none'}")
-    for row, column in np.argwhere((np.abs(gains) < 1) & (gains != 0)):
-        lines.append(f"row {row + 1}, column {column + 1}: {_said(float(gains[row, column]))}")
-    return lines
-
-
-def _said(gain: float) -> str:
-    if gain == 0:
-        return "dead"
-    return f"gain {100 * abs(gain):.0f} %{', inverted' if gain < 0 else ''}"
-
-
-class ActuatorSwings:
-    """An actuator of a device that swings out and back for some seconds, and then rests.
-
-    Parameters
-    ----------
-    device
-        Open device.
-    clock
-        Clock by which ticks are due.
-    """
-
-    def __init__(self, device: Device, clock: Clock) -> None:
-        self._device, self._clock = device, clock
-        self._rate_hz = device.display.rate_hz
-        self._left_s = 0.0
-        self._frame, self._at = np.zeros(device.display.shape), (0, 0)
-        self._due_ns = clock.now_ns()
-        self._was = device.rested, device.taking
-
-    def swing(self, place: tuple[int, int]) -> None:
-        """Have an actuator swing, by its row and column, once all rest."""
-        self._at, self._left_s = place, _SWINGS_S
+        Raises
+        ------
+        DeviceError
+            If the device is gone for good.
+        """
+        self.rest()
+        shown = self._gains.copy()
+        shown[self.place] = shown[self.place] or 1.0  # one that was found to be dead, too
+        self._device.calibrate(Calibration(self._name, shown.tolist()))
+        self._left_s = _SWINGS_S
 
     def tick(self) -> None:
         """Wait for the next frame's time, read the device, and send the frame.
@@ -157,7 +129,7 @@ class ActuatorSwings:
         if now != self._was:  # it has gone to rest by itself, or leaves it: begin again from there
             self._was, self._left_s = now, _SWINGS_S if self._left_s else 0.0
         self._left_s = max(self._left_s - 1 / self._rate_hz, 0.0)
-        self._frame[self._at] = math.sin(math.pi * self._left_s) ** 2
+        self._frame[self.place] = math.sin(math.pi * self._left_s) ** 2
         self._send()
 
     def rest(self) -> None:
@@ -180,3 +152,21 @@ class ActuatorSwings:
         self._clock.sleep_until_ns(self._due_ns)
         self._device.read()
         self._device.write(self._frame)
+
+
+def gains_said(calibration: Calibration) -> list[str]:
+    """Lines on what was found of a device's actuators."""
+    gains = calibration.gains
+    lines = []
+    for label, found in (("dead", gains == 0), ("inverted", gains < 0)):
+        places = [f"row {row + 1}, column {column + 1}" for row, column in np.argwhere(found)]
+        lines.append(f"{label}: {'; '.join(places) or 'none'}")
+    for row, column in np.argwhere((np.abs(gains) < 1) & (gains != 0)):
+        lines.append(f"row {row + 1}, column {column + 1}: {_said(float(gains[row, column]))}")
+    return lines
+
+
+def _said(gain: float) -> str:
+    if gain == 0:
+        return "dead"
+    return f"gain {100 * abs(gain):.0f} %{', inverted' if gain < 0 else ''}"

@@ -230,15 +230,17 @@ class Loop:
         follows = self._same_rate and device.descriptor is not None
         if follows:
             begins_ns, latest_ns = self._began_ns + self._guard_ns, latest_ns + self._guard_ns
-        elif device.ahead_ns:
-            clock.sleep_until_ns(self._due_ns - device.ahead_ns)
-            device.ask()
-        clock.sleep_until_ns(begins_ns)
+        else:
+            if device.ahead_ns:
+                clock.sleep_until_ns(self._due_ns - device.ahead_ns)
+                device.ask()
+            clock.sleep_until_ns(begins_ns)
         while True:
             waited = (device.descriptor if follows else None), orders
             ready = clock.wait_ns([each for each in waited if each is not None], latest_ns)
             if orders is not None and orders in ready:
                 orders.obey()
+            clock.sleep_until_ns(begins_ns)
             sample = device.read()
             if sample is not None or clock.now_ns() >= latest_ns:
                 return sample

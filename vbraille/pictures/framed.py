@@ -18,8 +18,7 @@ from vbraille.recording import Recording, SceneRecorded
 from vbraille.render.braille.models import STRESS2_8X8, Model, check_shown, model_of
 from vbraille.scene.converting import write_scene
 from vbraille.scene.locations import Locations, OpenedScene
-from vbraille.scene.reading import open_scene
-from vbraille.scene.resolving import resolve
+from vbraille.scene.reading import open_scene, resolve
 from vbraille.scene.scene import Scene
 
 if TYPE_CHECKING:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vbraille.errors import check_range
 from vbraille.scene.geometry import Box
 
 if TYPE_CHECKING:
@@ -18,8 +17,6 @@ if TYPE_CHECKING:
 
 
 WHOLE = 65_535  # the intensity 1
-# Images are 0.1 mm to 10 m, and farther with what their blur reaches.
-_LEAST_MM, _MOST_MM = 0.01, 100_000.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,11 +39,6 @@ class Bitmap:
         Intensity beyond it, from 0 to 1, in steps as fine as those of the others.
     nearest
         Whether a place has the intensity of its pixel, and not one between those of its neighbours.
-
-    Raises
-    ------
-    ValueError
-        If a place or a size is no number, or far out of range.
     """
 
     intensities: NDArray[np.uint16]
@@ -55,14 +47,6 @@ class Bitmap:
     height_mm: float
     outside: float = 0.0
     nearest: bool = False
-
-    def __post_init__(self) -> None:
-        sides = {"left": self.place_mm[0], "top": self.place_mm[1]}
-        for what, value in sides.items():
-            check_range(f"{what} of a bitmap", value, -_MOST_MM, _MOST_MM, " mm")
-        sizes = {"width": self.width_mm, "height": self.height_mm}
-        for what, value in sizes.items():
-            check_range(f"{what} of a bitmap", value, _LEAST_MM, _MOST_MM, " mm")
 
 
 _MOST_EDGE_PIXELS, _MOST_EDGE_MM = 5, 1.0

@@ -125,7 +125,7 @@ class OpenedScene:
     written
         The scene with its uses and names, and with what it includes.
     resolved
-        The same as it is shown; see `vbraille.scene.resolving`. It has the same elements in the
+        The same as it is shown; see `vbraille.scene.reading`. It has the same elements in the
         same order.
     locations
         Where its elements are written.

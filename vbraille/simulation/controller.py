@@ -26,6 +26,7 @@ from vbraille.devices.protocol import (
     Lines,
     State,
     info_pieces,
+    level_bits,
     line_of,
     read_info,
     state_body,
@@ -124,7 +125,8 @@ class Controller:
         self._say_code = 0
         self._zero = (0, 0, 0)
         self._seen = (0, 0, 0)
-        self._level_bytes = count if self.top <= 255 else (10 * count + 7) // 8
+        self._bits = level_bits(self.top)
+        self._level_bytes = (self._bits * count + 7) // 8
         self._lines = Lines()
 
     @property
@@ -222,10 +224,9 @@ class Controller:
         return True
 
     def _unpacked(self, packed: bytes) -> NDArray[np.int64]:
-        if self.top <= 255:
-            return np.frombuffer(packed, np.uint8).astype(np.int64)
         bits = np.unpackbits(np.frombuffer(packed, np.uint8), bitorder="little")
-        return bits[: 10 * self.level.size].reshape(-1, 10) @ (1 << np.arange(10))
+        levels = bits[: self._bits * self.level.size].reshape(-1, self._bits)
+        return levels @ (1 << np.arange(self._bits))
 
     def _speak(self, room: bool) -> bytes:
         self._until_state -= self._until_state > 0
@@ -249,11 +250,12 @@ class Controller:
         x, y, turn = (_i32(now - zero) for now, zero in zip(self._seen, self._zero, strict=True))
         waiting = WAITING * (self.waiting or self.resting)
         flags = PLACED * self.placed + waiting + FAULT * self.faulty
-        others = bytes((self.buttons, *self.knobs, self.trips & 0xFF, self.dropped & 0xFF))
         analog = struct.pack(f"<{len(self.analog)}h", *self.analog)
         now_us = self._now_us & 0xFFFF_FFFF
         taken = self.taken if self.acknowledges else self._base
-        return State(self.number, now_us, x, y, turn, taken, flags, others + analog)
+        counted = self.trips & 0xFF, self.dropped & 0xFF
+        controls = self.buttons, bytes(self.knobs)
+        return State(self.number, now_us, x, y, turn, taken, flags, *controls, *counted, analog)
 
 
 def _i32(number: int) -> int:

@@ -14,11 +14,16 @@ from vbraille.wording import printable
 MOST_BYTES = 100_000_000  # of a file, or of a member when it is unpacked
 _ENCRYPTED = 0x1
 # Fonts are garbled in books that are open otherwise; no text is.
-_FONTS = ("http://www.idpf.org/2008/embedding", "http://ns.adobe.com/pdf/enc#RC")
+_FONTS = (
+    "http://www.idpf.org/2008/embedding",
+    "http://ns.adobe.com/pdf/enc#RC",
+    "http://ns.adobe.com/pdf/enc#rc",
+)
+# Files of locks, and what is in them; Adobe's has the name of one that tells who owns a book.
 _LOCKS = (
-    ("META-INF/license.lcpl", "Readium LCP"),
-    ("META-INF/sinf.xml", "Apple FairPlay"),
-    ("META-INF/rights.xml", "Adobe ADEPT"),
+    ("META-INF/license.lcpl", b"{", "Readium LCP"),
+    ("META-INF/sinf.xml", b"<", "Apple FairPlay"),
+    ("META-INF/rights.xml", b"adept", "Adobe ADEPT"),
 )
 _FAULTS = (
     zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError, ValueError
@@ -128,24 +133,15 @@ class Archive:
         InputError
             If it is; the message says by whose lock.
         """
-        lock = next((said for member, said in _LOCKS if self._locks(member)), "")
-        for method in self.xml("META-INF/encryption.xml", needed=False).iter("EncryptionMethod"):
-            if method.get("Algorithm", "").replace("#rc", "#RC") not in _FONTS:
-                lock = lock or "a lock that it does not name"
-                break
-        else:
-            if self.find("META-INF/encryption.xml") is not None:
-                return  # only fonts are garbled
-        if lock:
+        locks = [lock for member, sign, lock in _LOCKS if sign in self.read_if(member)]
+        listed = self.xml("META-INF/encryption.xml", needed=False)
+        ways = {method.get("Algorithm") for method in listed.iter("EncryptionMethod")}
+        if ways.difference(_FONTS) or (locks and listed.name == "missing"):
+            lock = [*locks, "a lock that it does not name"][0]
             raise InputError(
                 f"{self.name} is locked by {lock}, so that only the seller's programs can read "
                 f"it; ask the seller or your library for a copy without a lock"
             )
-
-    def _locks(self, member: str) -> bool:
-        # What Adobe calls its file, others call what tells who owns a book.
-        content = self.read_if(member)
-        return bool(content) and (not member.endswith("rights.xml") or b"adept" in content)
 
 
 def _plain(name: str) -> str:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 _NAMES = names("docx")
+_BODY = re.compile(r"word/document\d*\.xml")
 _OFF = frozenset(("0", "false", "none", "off"))
 _LINK = re.compile(
     r'\s*HYPERLINK\s+(?:"([^"]*)"|([^\s\\]\S*))?(?:.*\\l\s+"?([^"\s]*))?', re.I | re.S
@@ -50,36 +51,31 @@ class _Docx(Document):
     names = _NAMES
 
     def blocks_of(self, source: Source) -> Iterator[Block]:
-        member = "word/document.xml"
-        for relation in self.archive.xml("_rels/.rels", needed=False).iter("Relationship"):
-            target = relation.get("Target").lstrip("/")
-            if relation.get("Type").endswith("/officeDocument") and self.archive.find(target):
-                member = target
-        self._folder, _, name = member.rpartition("/")
-        styles = self._part("styles.xml")
+        bodies = (member for member in self.archive.members if _BODY.fullmatch(member))
+        root = self._part(next(bodies, "word/document.xml"))
+        styles = self._part("word/styles.xml")
         self.styles = {each.get("styleId"): _look_of(each) for each in styles.iter("style")}
         self.usual = tag_of(_value(styles, "docDefaults/rPrDefault/rPr/lang"))
-        self.lists = _lists_of(self._part("numbering.xml"))
+        self.lists = _lists_of(self._part("word/numbering.xml"))
+        for kind in ("footnote", "endnote"):
+            for note in self._part(f"word/{kind}s.xml").iter(kind):
+                self.bodies[f"{kind}-{note.get('id')}"] = note
         self._fields: list[str] = []  # instructions of the fields around the run
         self._link: Element | None = None  # that of a field of the paragraph
         self._begun: Element | None = None  # a paragraph that is one with the next
-        self._read_links(name)
-        self.inner(self.archive.xml(member), self.body, {})
-        for key, item in self.note_items():
-            kind, _, number = key.partition("-")
-            self._read_links(f"{kind}s.xml")
-            for note in self._part(f"{kind}s.xml").iter(kind):
-                if note.get("id") == number:
-                    self.inner(note, item, {})
-        return self.blocks(source, self.archive.xml("docProps/core.xml", needed=False))
+        self.inner(root, self.body, {})
+        return self.blocks(source, self._part("docProps/core.xml"))
 
-    def _part(self, name: str) -> Element:
-        return self.archive.xml(f"{self._folder}/{name}", needed=False)
-
-    def _read_links(self, name: str) -> None:
-        """Read the addresses of a part of the document by their keys."""
-        found = self._part(f"_rels/{name}.rels").iter("Relationship")
-        self._links = {relation.get("Id"): relation.get("Target") for relation in found}
+    def _part(self, member: str) -> Element:
+        """Part of the document, with the addresses of its links; only its text must be there."""
+        is_body = _BODY.fullmatch(member) is not None
+        root = self.archive.xml(member, needed=is_body)
+        addresses = member.replace("word/", "word/_rels/") + ".rels"
+        found = self.archive.xml(addresses, needed=False).iter("Relationship")
+        links = {relation.get("Id"): relation.get("Target") for relation in found}
+        for link in root.iter("hyperlink"):
+            link.attributes["href"] = links.get(link.get("id"), "")
+        return root
 
     def read_own(self, element: Element, into: Element, look: Look) -> None:
         """Read a block, what stands in a paragraph, or what stands in a run."""
@@ -109,7 +105,7 @@ class _Docx(Document):
                         self.read(child, self._link or into, look)
             case "hyperlink":
                 anchor = element.get("anchor")
-                address = self._links.get(element.get("id"), "") + (f"#{anchor}" if anchor else "")
+                address = element.get("href") + (f"#{anchor}" if anchor else "")
                 self.inner(element, into.add("a", href=address), look)
             case "fldSimple":
                 self.inner(element, into.add("a", href=_target(element.get("instr"))), look)
@@ -123,7 +119,7 @@ class _Docx(Document):
                 sign = symbol(_hexadecimal(element.get("char")), element.get("font"))
                 self.say(into, sign, look)
                 if not sign:
-                    put_picture(into, [], "symbol")
+                    put_picture(into, [], "canvas", "symbol")
             case "footnoteReference" | "endnoteReference" as name:
                 self.refer(into, f"{name.removesuffix('Reference')}-{element.get('id')}")
             case "AlternateContent":
@@ -195,11 +191,11 @@ class _Docx(Document):
             self.inner(box, into.add("div"), {})
             return
         kinds = {each.get("uri").rpartition("/")[2] for each in element.iter("graphicData")}
-        what = "picture" if any(element.iter("pic", "imagedata")) else "drawing"
-        what = "embedded object" if element.name == "object" else what
-        what = next(iter(kinds & {"chart", "diagram"}), what)
+        name = "img" if any(element.iter("pic", "imagedata")) else "canvas"
         described = [each.get("descr") for each in element.iter("docPr")]
-        put_picture(into, described + [each.get("alt") for each in element.iter("shape")], what)
+        described += [each.get("alt") for each in element.iter("shape")]
+        name = "object" if element.name == "object" else name
+        put_picture(into, described, name, *kinds & {"chart", "diagram"})
 
 
 def _lists_of(root: Element) -> dict[str, Numbering]:

@@ -46,66 +46,59 @@ def read_epub(source: Source) -> Iterator[Block]:
     InputError
         If it is damaged or locked.
     """
-    archive = Archive(source.stream, source.name)
-    archive.check_unlocked()
-    package = _Package(archive)
-    source.title = package.root.said("title")
-    source.language = package.root.said("language").replace("_", "-")
-    source.in_cells = archive.read_if("mimetype").strip() == _EBRAILLE or any(
-        meta.get("property") == "a11y:brailleSystem" for meta in package.root.iter("meta")
-    )
-    source.members = archive.read
-    sizes = [archive.size(chapter.get("href")) for chapter in package.chapters]
-    source.expected = sum(sizes) * 3 // 4
-    return _blocks(source, package)
+    return _Epub(source).blocks()
 
 
-class _Package:
-    """Metadata of an EPUB, and its chapters as items of its manifest."""
+class _Epub:
+    """A book, and its chapters as items of its manifest."""
 
-    def __init__(self, archive: Archive) -> None:
-        self.archive = archive
-        member = self._find()
-        self.root = self._tree(member)
-        self._items: dict[str, Element] = {}
-        for item in self.root.iter("item"):
+    def __init__(self, source: Source) -> None:
+        self.source, self.archive = source, Archive(source.stream, source.name)
+        self.archive.check_unlocked()
+        named = [file.get("full-path") for file in self._tree(_CONTAINER).iter("rootfile")]
+        named = [posixpath.normpath(unquote(name)) for name in named]
+        member = next(filter(self.archive.find, (*named, *_PACKAGES)), "")
+        if not member:
+            raise InputError(f"{source.name} is no EPUB: it has no package; give a book")
+        root = self._tree(member)
+        source.title = root.said("title")
+        source.language = root.said("language").replace("_", "-")
+        source.in_cells = self.archive.read_if("mimetype").strip() == _EBRAILLE or any(
+            meta.get("property") == "a11y:brailleSystem" for meta in root.iter("meta")
+        )
+        source.members = self.archive.read
+        self.items: dict[str, Element] = {}
+        for item in root.iter("item"):
             item.attributes["href"] = inside(member, item.get("href"))
-            self._items.setdefault(item.get("id"), item)
-        spine = sorted(self.root.iter("itemref"), key=lambda each: each.get("linear") == "no")
+            self.items.setdefault(item.get("id"), item)
+        spine = sorted(root.iter("itemref"), key=lambda each: each.get("linear") == "no")
         chapters = [self._readable(each.get("idref")) for each in spine]
         self.chapters = list(dict.fromkeys(each for each in chapters if each is not None))
         if not self.chapters:
             raise InputError(
-                f"{archive.name} does not say what its chapters are: its spine is empty; get "
+                f"{source.name} does not say what its chapters are: its spine is empty; get "
                 f"another copy of the book"
             )
-        if not any(archive.find(chapter.get("href")) for chapter in self.chapters):
-            raise InputError(f"{archive.name} has none of its chapters; get the book again")
-
-    def _find(self) -> str:
-        """Member with the package, as the container says, or else one with its usual name."""
-        named = []
-        if self.archive.find(_CONTAINER) is not None:
-            named = [file.get("full-path") for file in self._tree(_CONTAINER).iter("rootfile")]
-        for member in (*(posixpath.normpath(unquote(name)) for name in named), *_PACKAGES):
-            if self.archive.find(member) is not None:
-                return member
-        raise InputError(f"{self.archive.name} is no EPUB: it has no package; give a book")
+        if not any(self.archive.find(chapter.get("href")) for chapter in self.chapters):
+            raise InputError(f"{source.name} has none of its chapters; get the book again")
+        source.expected = (
+            sum(self.archive.size(each.get("href")) for each in self.chapters) * 3 // 4
+        )
 
     def _tree(self, member: str) -> Element:
-        """Tree of a part; a raw "&" or a tag that is not closed does not spoil it."""
-        return read_tree(self.archive.read(member), member, lambda _: None, xml=True)
+        """Tree of a part that may be missing; a raw "&" or an open tag does not spoil it."""
+        return read_tree(self.archive.read_if(member), member, lambda _: None, xml=True)
 
     def _readable(self, identity: str) -> Element | None:
         """Item of the manifest, or the one to fall back to that is markup."""
-        item = first = self._items.get(identity)
+        item = first = self.items.get(identity)
         for _ in range(10):
             if item is None or _kind(item) in _TEXTS:
                 return item or first
-            item = self._items.get(item.get("fallback"))
+            item = self.items.get(item.get("fallback"))
         return first
 
-    def entries(self, kinds: set[str], ncx: str) -> list[tuple[int, str, str]]:
+    def _entries(self, kinds: set[str], ncx: str) -> list[tuple[int, str, str]]:
         """Level, title and anchor of each entry of a list of the nav, or else of the NCX.
 
         Parameters
@@ -115,19 +108,73 @@ class _Package:
         ncx
             Name of its element in the NCX.
         """
-        items = self._items.values()
+        items = list(self.items.values())
         holders = [item for item in items if "nav" in item.get("properties").split()]
         for item in [*holders, *(item for item in items if _kind(item) == _NCX)]:
-            member = item.get("href")
-            if self.archive.find(member) is None:
-                continue
-            for listed in self._tree(member).iter("nav", ncx):
-                found = []
-                if listed.words & kinds or listed.name == ncx:
-                    found = list(_entries(listed, member))
+            for listed in self._tree(item.get("href")).iter("nav", ncx):
+                is_it = listed.name == ncx or listed.words & kinds
+                found = list(_entries(listed, item.get("href"))) if is_it else []
                 if found:
                     return found
         return []
+
+    def blocks(self) -> Iterator[Block]:
+        """Blocks of all chapters, with what the contents and the list of pages tell of them."""
+        contents: dict[str, tuple[int, str]] = {}
+        for level, title, anchor in self._entries({"toc", "doc-toc"}, "navmap"):
+            contents.setdefault(anchor, (level, title))
+        listed = self._entries({"page-list", "doc-pagelist"}, "pagelist")
+        pages = {anchor: label for _, label, anchor in listed}
+        groups = count(1)
+        texts = wrong = 0
+        for chapter in self.chapters:
+            blocks = self._chapter(chapter, groups)
+            kinds = [block.kind for block in blocks]
+            for number, block in enumerate(blocks):
+                anchors = block.anchors if number else (chapter.get("href"), *block.anchors)
+                entry = next((contents[name] for name in anchors if name in contents), None)
+                if BlockKind.HEADING in kinds[number : number + _NEAR]:
+                    entry = None  # which the text has itself
+                if BlockKind.PAGE not in kinds:
+                    yield from (Block(pages[n], BlockKind.PAGE) for n in anchors if n in pages)
+                cells, text = None, block.text
+                if self.source.in_cells:
+                    text, strange = re.subn("[^ -~⠀-⣿]", _FULL, _SPACES.sub(" ", text))
+                    cells, wrong = Cells.from_brf(text), wrong + strange
+                texts += text != ""
+                yield block.replace(anchors=anchors, entry=entry, text=text, cells=cells)
+        if not texts:
+            raise InputError(
+                f"{self.source.name} holds no text that can be read; give another book"
+            )
+        if wrong:
+            self.source.note(
+                f"{self.source.name} should be all braille and has "
+                f"{counted(wrong, 'other character')}, shown as full cells"
+            )
+
+    def _chapter(self, chapter: Element, groups: Iterator[int]) -> list[Block]:
+        """Blocks of a chapter, or a remark on one that cannot be shown."""
+        source, member, kind = self.source, chapter.get("href"), _kind(chapter)
+        spell = _in_braille if source.in_cells else str
+        what = "chapter"
+        if self.archive.find(member) is None:
+            said = f"[missing chapter: {member}]"
+        elif kind not in _TEXTS:
+            what = "picture" if kind.startswith("image/") else "page"
+            said = f"[{what}: {kind}]"
+        else:
+            try:
+                name = f"{source.name} ({member})"
+                root = read_tree(self.archive.read(member), name, source.note, xml=True)
+                return Walker(source.language, member, spell, groups).read(root)
+            except InputError as error:
+                if len(self.chapters) == 1:
+                    raise
+                source.note(str(error))
+                said = f"[damaged chapter: {member}]"
+        said = spell(said)
+        return [Block(said, marks=(Mark(MarkKind.UNSHOWN, 0, len(said), what),))]
 
 
 def _kind(item: Element) -> str:
@@ -144,66 +191,6 @@ def _entries(holder: Element, member: str, level: int = 0) -> Iterator[tuple[int
         if title.strip() and address:
             yield max(depth, 1), " ".join(title.split()), inside(member, address)
         yield from _entries(child, member, depth)
-
-
-def _blocks(source: Source, package: _Package) -> Iterator[Block]:
-    """Blocks of all chapters, with what the contents and the list of pages tell of them."""
-    contents: dict[str, tuple[int, str]] = {}
-    for level, title, anchor in package.entries({"toc", "doc-toc"}, "navmap"):
-        contents.setdefault(anchor, (level, title))
-    listed = package.entries({"page-list", "doc-pagelist"}, "pagelist")
-    pages = {anchor: label for _, label, anchor in listed}
-    groups = count(1)
-    texts = wrong = 0
-    for chapter in package.chapters:
-        blocks = _chapter(source, package, chapter, groups)
-        kinds = [block.kind for block in blocks]
-        for number, block in enumerate(blocks):
-            anchors = block.anchors if number else (chapter.get("href"), *block.anchors)
-            entry = next((contents[name] for name in anchors if name in contents), None)
-            if BlockKind.HEADING in kinds[number : number + _NEAR]:
-                entry = None  # which the text has itself
-            if BlockKind.PAGE not in kinds:
-                yield from (Block(pages[n], BlockKind.PAGE) for n in anchors if n in pages)
-            cells, text = None, block.text
-            if source.in_cells:
-                text, strange = re.subn("[^ -~⠀-⣿]", _FULL, _SPACES.sub(" ", text))
-                cells, wrong = Cells.from_brf(text), wrong + strange
-            texts += text != ""
-            yield block.replace(anchors=anchors, entry=entry, text=text, cells=cells)
-    if not texts:
-        raise InputError(f"{source.name} holds no text that can be read; give another book")
-    if wrong:
-        source.note(
-            f"{source.name} should be all braille and has {counted(wrong, 'other character')}, "
-            f"shown as full cells"
-        )
-
-
-def _chapter(
-    source: Source, package: _Package, chapter: Element, groups: Iterator[int]
-) -> list[Block]:
-    """Blocks of a chapter, or a remark on one that cannot be shown."""
-    archive, member, kind = package.archive, chapter.get("href"), _kind(chapter)
-    what = "chapter"
-    if archive.find(member) is None:
-        said = f"[missing chapter: {member}]"
-    elif kind not in _TEXTS:
-        what = "picture" if kind.startswith("image/") else "page"
-        said = f"[{what}: {kind}]"
-    else:
-        try:
-            name = f"{source.name} ({member})"
-            root = read_tree(archive.read(member), name, source.note, xml=True)
-            spell = _in_braille if source.in_cells else str
-            return Walker(source.language, member, spell, groups).read(root)
-        except InputError as error:
-            if len(package.chapters) == 1:
-                raise
-            source.note(str(error))
-            said = f"[damaged chapter: {member}]"
-    said = _in_braille(said) if source.in_cells else said
-    return [Block(said, marks=(Mark(MarkKind.UNSHOWN, 0, len(said), what),))]
 
 
 def _in_braille(text: str) -> str:

@@ -8,7 +8,7 @@ import tomllib
 from functools import partial
 from importlib import import_module
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from vbraille.errors import InputError
 from vbraille.translate.archive import MOST_BYTES, Archive
@@ -20,48 +20,24 @@ from vbraille.wording import nearest, setting
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-
-class Format(NamedTuple):
-    """A format of books.
-
-    Attributes
-    ----------
-    reader : str
-        Function that reads its blocks, as a module of this package and a name in it. It is loaded
-        when a book needs it.
-    suffixes : tuple of str
-        Ends of files' names, for those whose bytes do not show it.
-    takes : tuple of str
-        Options of `open_source` that the reader takes.
-    """
-
-    reader: str
-    suffixes: tuple[str, ...] = ()
-    takes: tuple[str, ...] = ()
-
-
-_FORMATS = {
-    "text": Format("plain:read_text", takes=("encoding", "keep_lines")),
-    "markdown": Format("markdown:read_markdown", (".md", ".markdown"), ("encoding",)),
-    "html": Format("html:read_html", (".html", ".htm", ".xhtml"), ("encoding",)),
-    "epub": Format("epub:read_epub"),
-    "dtbook": Format("html:read_html"),
-    "docx": Format("docx:read_docx"),
-    "odt": Format("odt:read_odt"),
-    "rtf": Format("rtf:read_rtf"),
-    "brf": Format("braillefiles:read_brf", (".brf", ".brl"), ("encoding", "brf_table")),
-    "unicode-braille": Format("braillefiles:read_brf", takes=("encoding",)),
-    "pef": Format("braillefiles:read_pef", (".pef",)),
+# The function that reads a format's blocks, as a module of this package and a name in it, which is
+# loaded when a book needs it; and the options of `open_source` that it takes.
+_READERS = {
+    "text": "plain:read_text encoding keep_lines",
+    "markdown": "markdown:read_markdown encoding",
+    "html": "html:read_html encoding",
+    "epub": "epub:read_epub",
+    "dtbook": "html:read_html",
+    "docx": "docx:read_docx",
+    "odt": "odt:read_odt",
+    "rtf": "rtf:read_rtf",
+    "brf": "braillefiles:read_brf encoding brf_table",
+    "unicode-braille": "braillefiles:read_brf encoding",
+    "pef": "braillefiles:read_pef",
 }
-FORMATS = tuple(_FORMATS)
+FORMATS = tuple(_READERS)
 _KEEP_LINES = ("brf", "unicode-braille", "pef")  # whatever is asked for
-_ROOTS = {"html": "html", "head": "html", "title": "html", "body": "html"}
-_ROOTS |= {"dtbook": "dtbook", "pef": "pef"}
-_UNLIKE = tomllib.loads(Path(__file__).with_name("unlike.toml").read_text("utf-8"))
-_PICTURE = _UNLIKE["roots"]["svg"]
-_PICTURE_SUFFIXES = (".scene", ".svg", ".svgz", ".gen", ".tx")
-# A scene is TOML that says how large its canvas is.
-_SCENE = re.compile(r"\A(?:\s*#.*\n)*\s*[\w\[].*?^(?:\[canvas\]|canvas[ \t]*=)", re.M | re.S)
+_SHOWN_BY = tomllib.loads(Path(__file__).with_name("formats.toml").read_text("utf-8"))
 _OLE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _BEFORE_ROOT = r"(?:\s+|<\?.*?\?>|<!--.*?-->)*"
 _ROOT = re.compile(_BEFORE_ROOT + r"<(?:!doctype\s+)?([\w.:-]+)(?=[\s/>\[])", re.I | re.S)
@@ -107,14 +83,25 @@ def open_source(
     stream = _stream(file, name)
     try:
         found = find_format(stream, name) if form is None else form.lower()
-        if found not in _FORMATS:
+        if found not in FORMATS:
             raise InputError(f"unknown file format {form!r}{nearest(found, FORMATS)}")
+        reader, *takes = _READERS[found].split()
         given = {"encoding": encoding, "brf_table": brf_table, "keep_lines": keep_lines or None}
-        options = _fitting(found, name, given, wishes)
+        options: dict[str, Any] = {}
+        for option, value in given.items():
+            is_wish = option in wishes or (option == "keep_lines" and found in _KEEP_LINES)
+            if value is None or (is_wish and (option not in takes or found == "brf")):
+                continue
+            if option not in takes:
+                raise InputError(
+                    f"{name} is read as {found}, for which there is no "
+                    f"{setting(option.replace('_', '-'))}; leave it out"
+                )
+            options[option] = value
         stream.seek(0)
-        module, _, function = _FORMATS[found].reader.partition(":")
-        reader = getattr(import_module(f"vbraille.translate.{module}"), function)
-        return Source(name, found, stream, partial(reader, **options))
+        module, _, function = reader.partition(":")
+        read = getattr(import_module(f"vbraille.translate.{module}"), function)
+        return Source(name, found, stream, partial(read, **options))
     except BaseException:
         stream.close()
         raise
@@ -161,31 +148,6 @@ def _stream(file: str | BinaryIO, name: str) -> BinaryIO:
     return io.BytesIO(content)
 
 
-def _fitting(
-    form: str, name: str, given: dict[str, Any], wishes: Collection[str]
-) -> dict[str, Any]:
-    """Options for a reader, of those that are given.
-
-    Raises
-    ------
-    InputError
-        If an option is not for the format.
-    """
-    options = {option: value for option, value in given.items() if value is not None}
-    if form in _KEEP_LINES:
-        options.pop("keep_lines", None)
-    for option in list(options):
-        fits = option in _FORMATS[form].takes
-        if option in wishes and (not fits or form == "brf"):
-            del options[option]
-        elif not fits:
-            raise InputError(
-                f"{name} is read as {form}, for which there is no "
-                f"{setting(option.replace('_', '-'))}; leave it out"
-            )
-    return options
-
-
 def find_format(stream: BinaryIO, name: str) -> str:
     """Name of the format of a book; plain text for all that is nothing else.
 
@@ -204,82 +166,37 @@ def find_format(stream: BinaryIO, name: str) -> str:
     stream.seek(0)
     sample = stream.read(_SAMPLE)
     if sample.startswith(b"PK"):
-        return _zipped(stream, name)
-    if sample.startswith(b"{\\rtf"):
-        return "rtf"
-    refused = _refused(stream, sample)
-    if refused:
-        raise InputError(f"{name} is {refused}")
+        archive = Archive(stream, name)
+        kind = archive.read_if("mimetype").decode("ascii", "replace")
+        return _shown("zips", name, kind, *archive.members)
     text, _ = decode(sample)
     root = _ROOT.match(text)
-    if root is not None:
-        for found in (root[1].lower(), root[1].lower().rpartition(":")[2]):
-            if found in _UNLIKE["roots"]:
-                raise InputError(f"{name} is {_UNLIKE['roots'][found]}")
-            if found in _ROOTS:
-                return _ROOTS[found]
+    names = (root[1].lower(), root[1].lower().rpartition(":")[2]) if root else ()
+    whole = sample + stream.read() if sample.startswith(_OLE) else sample
+    head = whole.decode("latin-1").replace("\0", "")
+    found = _shown("beginnings", name, head, *(f"<{each}>" for each in names))
     printed = "".join(text[:4096].split())
-    if sum("\u2800" <= character <= "\u28ff" for character in printed) > 0.9 * len(printed):
-        return "unicode-braille" if printed else "text"
-    suffix = PurePath(name).suffix.lower()
-    by_suffix = [form for form, row in _FORMATS.items() if suffix in row.suffixes]
-    if suffix in _PICTURE_SUFFIXES or (not by_suffix and _SCENE.match(text)):
-        raise InputError(f"{name} is {_PICTURE}")
-    kind = _unlike("binary", sample) or ("binary data" if is_binary(sample) else "")
-    if kind and not by_suffix:
-        raise InputError(f"{name} is {kind}, not text; give a book or a text file")
-    return [*by_suffix, "text"][0]
+    braille = sum("\u2800" <= character <= "\u28ff" for character in printed)
+    if not found and braille > 0.9 * len(printed):
+        found = "unicode-braille"
+    found = found or _shown("endings", name, PurePath(name).suffix.lower())
+    found = found or _shown("others", name, head)
+    if not found and is_binary(sample):
+        raise InputError(f"{name} is binary data, not text; give a book or a text file")
+    return found or "text"
 
 
-def _unlike(where: str, sample: bytes) -> str:
-    """End of a sentence on a file whose bytes begin so; empty for others."""
-    for beginning, said in _UNLIKE[where].items():
-        if sample.startswith(beginning.encode("latin-1")):
-            return said
-    return ""
-
-
-def _refused(stream: BinaryIO, sample: bytes) -> str:
-    """End of a sentence on a book that cannot be read here; empty for others."""
-    said = _unlike("beginnings", sample)
-    if said:
-        return said
-    if sample[60:68] in (b"BOOKMOBI", b"TEXtREAd"):
-        return "a Kindle book (MOBI); save it as EPUB, without Amazon's lock if it has one"
-    if not sample.startswith(_OLE):
-        return ""
-    stream.seek(0)
-    content = stream.read()
-    names = _UNLIKE["ole"].items()
-    return next(said for name, said in names if name.encode("utf-16-le") in content)
-
-
-def _zipped(stream: BinaryIO, name: str) -> str:
-    """Name of the format of a zip archive's book.
+def _shown(by: str, name: str, *texts: str) -> str:
+    """Name of the format that something about a file shows; empty if it shows none.
 
     Raises
     ------
     InputError
-        If it holds none that can be read here.
+        If it shows that the file cannot be read here.
     """
-    archive = Archive(stream, name)
-    members = archive.members
-    kind = archive.read_if("mimetype").decode("ascii", "replace").strip()
-    if kind in ("application/epub+zip", "application/ebrl+zip"):
-        return "epub"
-    if kind.startswith("application/vnd.oasis.opendocument.text"):
-        return "odt"
-    if "META-INF/container.xml" in members or "package.opf" in members:
-        return "epub"  # a book without its mimetype is one nevertheless
-    if "[Content_Types].xml" in members and any(each.startswith("word/") for each in members):
-        return "docx"
-    for beginning, said in _UNLIKE["zips"].items():
-        if any(member.startswith(beginning) for member in members):
-            raise InputError(f"{name} is {said}")
-    if kind.startswith("application/vnd.oasis.opendocument."):
-        raise InputError(f"{name} is an OpenDocument file, not a text; save it as ODT or HTML")
-    if any(member.lower().endswith(".opf") for member in members):
-        raise InputError(
-            f"{name} is a zip archive of a DAISY book; unpack it and give its XML file"
-        )
-    raise InputError(f"{name} is a zip archive, not text; unpack it and give the file in it")
+    for pattern, told in _SHOWN_BY[by].items():
+        if any(re.match(pattern, text, re.S) for text in texts):
+            if told in FORMATS:
+                return told
+            raise InputError(f"{name} is {told}")
+    return ""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from vbraille.translate.trees import names
+
 if TYPE_CHECKING:
     from vbraille.translate.trees import Element
 
@@ -12,27 +14,10 @@ _FUNCTION = re.compile(
     "(arc|)(sin|cos|tan)|(sin|cos|tan)h|cot|sec|csc|log|ln|lg|exp|lim|max|min|sup|inf|det|dim|ker"
     "|gcd|mod|arg"
 )
+_ASIDE = re.compile("annotation|.*Pr$")
 _INVISIBLE = dict.fromkeys(map(ord, "\u2061\u2062\u2063\u2064\u200b"))
-_SIGNS = {"∑": "\\sum", "∏": "\\prod", "∫": "\\int", "⋃": "\\bigcup", "⋂": "\\bigcap"}
-_ACCENTS = {"¯": "\\bar", "‾": "\\bar", "^": "\\hat", "ˆ": "\\hat", "→": "\\vec", "~": "\\tilde"}
-_LETTERS = ("mi", "mn", "mo", "ms", "mtext", "none", "mprescripts")
-# Names in MathML and in OMML, and the TeX of their parts in order.
-_FORMS = {
-    name: form
-    for names, form in {
-        "mfrac f": "\\frac{{{0}}}{{{1}}}",
-        "msup mover sSup limUpp": "{0}^{{{1}}}",
-        "msub munder sSub limLow": "{0}_{{{1}}}",
-        "msubsup munderover sSubSup": "{0}_{{{1}}}^{{{2}}}",
-        "sPre": "{{}}_{{{0}}}^{{{1}}}{2}",
-        "nary": "{0}_{{{1}}}^{{{2}}} {3}",
-        "mroot": "\\sqrt[{1}]{{{0}}}",
-        "rad": "\\sqrt[{0}]{{{1}}}",
-        "func": "{0} {1}",
-        "bar": "\\overline{{{0}}}",
-    }.items()
-    for name in names.split()
-}
+_NAMES = names("formulas")
+_SIGNS, _ACCENTS, _FORMS = _NAMES["signs"], _NAMES["accents"], _NAMES["forms"]
 
 
 def formula_text(math: Element) -> str:
@@ -46,14 +31,13 @@ def formula_text(math: Element) -> str:
 
 def _tex(element: Element) -> str:
     name = element.name
-    if name in _LETTERS:
+    if name in _NAMES["letters"]:
         text = element.text.translate(_INVISIBLE).strip()
         return f"\\{text}" if _FUNCTION.fullmatch(text) else _SIGNS.get(text, text)
     if name == "t":
         return element.text
-    inner = [each for each in element.elements if not each.name.startswith("annotation")]
-    parts = [each for each in inner if not each.name.endswith("Pr")]
-    properties = [each for each in inner if each.name.endswith("Pr")]
+    parts = [each for each in element.elements if not _ASIDE.match(each.name)]
+    properties = (each for each in element.elements if each.name.endswith("Pr"))
     said = {each.name: each.get("val") for holder in properties for each in holder.elements}
     texts = [_tex(part) for part in parts]
     if name in ("mtable", "m"):

@@ -40,11 +40,9 @@ def read_html(source: Source, encoding: str | None = None) -> Iterator[Block]:
 
 def tree_blocks(source: Source, root: Element) -> Iterator[Block]:
     """Blocks of a tree, which says the title and the language unless they are known."""
-    metas = (e.get("content") for e in root.iter("meta") if e.get("name").lower() == "dc:title")
     tags = [element.get("lang").strip() for element in root.iter("html", "body", "dtbook", "book")]
-    source.title = (
-        source.title or root.said("title", "doctitle") or " ".join(next(metas, "").split())
-    )
+    metas = (e.get("content") for e in root.iter("meta") if e.get("name").lower() == "dc:title")
+    source.title = source.title or root.said("title", "doctitle") or next(metas, "").strip()
     source.language = source.language or next(filter(None, tags), "").replace("_", "-")
     return iter(Walker(source.language).read(root))
 
@@ -378,15 +376,13 @@ class Walker:
 
     def _img(self, element: Element, words: set[str]) -> None:
         path = re.split("[?#]", element.get("src"))[0].strip()
-        said = element.get("aria-label") or element.get("alt") or element.get("title")
-        said = " ".join(said.split())
+        said = _label(element)
         decoration = "alt" in element.attributes and not said
         if path.lower().endswith((".scene", ".svg")) and ":" not in path and not decoration:
             self._end()
             title = self._spell(f"figure: {said or unquote(PurePosixPath(path).stem)}")
             self._become(BlockKind.LINE)
-            target = inside(self._member, path) if self._member else path
-            self._add_apart(title, MarkKind.IMAGE, target)
+            self._add_apart(title, MarkKind.IMAGE, inside(self._member, path))
             self._end()
         elif said:
             self._add_apart(said, MarkKind.IMAGE)
@@ -428,8 +424,8 @@ class Walker:
 
     def _page(self, element: Element) -> None:
         """A page of print begins."""
-        told = element.get("title") or element.get("aria-label") or element.text
-        told = re.sub(r"^page\s+", "", " ".join(told.split()), flags=re.I).strip(" .")
+        told = _label(element) or " ".join(element.text.split())
+        told = re.sub(r"^page ", "", told, flags=re.I).strip(" .")
         anchors = (self._anchor(element.get("id")),) if element.get("id") else ()
         page = Block(told, BlockKind.PAGE, anchors=anchors)
         if self._text:
@@ -472,7 +468,8 @@ def _clipped(text: str, start: int, marks: list[Mark], role: _Role) -> Block:
 
 
 def _label(element: Element) -> str:
-    return " ".join((element.get("aria-label") or element.get("title")).split())
+    labels = map(element.get, ("aria-label", "alt", "title"))
+    return " ".join(next(filter(None, labels), "").split())
 
 
 def _same(one: str, other: str) -> bool:

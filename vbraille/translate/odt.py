@@ -1,9 +1,8 @@
-"""An ODT file as a tree of HTML: styles, lists, tables, notes, links, languages, pages."""
+"""An ODT file as a tree of HTML: styles, lists, tables, notes, links, languages."""
 
 from __future__ import annotations
 
 import posixpath
-from itertools import count
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
@@ -27,15 +26,9 @@ if TYPE_CHECKING:
     from vbraille.translate.blocks import Block
     from vbraille.translate.source import Source
 
+_NAMES = names("odt")
 _MOST_REPEATED = 1_000  # columns, rows or blanks
 _NUMBERED = ("list-level-style-number", "outline-level-style")
-# What properties of text say by one value, and otherwise by their others.
-_EMPHASES = {
-    "font-weight": ("b", "normal"),
-    "font-style": ("i", "normal"),
-    "text-underline-style": ("u", "none"),
-    "text-line-through-style": ("s", "none"),
-}
 
 
 def read_odt(source: Source) -> Iterator[Block]:
@@ -52,7 +45,7 @@ def read_odt(source: Source) -> Iterator[Block]:
 class _Odt(Document):
     """Reads one document."""
 
-    names = names("odt")
+    names = _NAMES
 
     def blocks_of(self, source: Source) -> Iterator[Block]:
         if b"encryption-data" in self.archive.read_if("META-INF/manifest.xml"):
@@ -64,12 +57,8 @@ class _Odt(Document):
         for part in (self.archive.xml("styles.xml", needed=False), root):
             self._read_styles(part)
         self._boxes = {box.get("id"): box for box in root.iter("checkbox")}
-        self._bodies: dict[str, Element] = {}  # of notes
-        self._pages = count(2)
         for body in root.iter("body"):
             self.inner(body, self.body, self.usual)
-        for key, item in self.note_items():
-            self.inner(self._bodies[key], item, self.usual)
         return self.blocks(source, self.archive.xml("meta.xml", needed=False))
 
     def _read_styles(self, part: Element) -> None:
@@ -120,11 +109,9 @@ class _Odt(Document):
                 self.inner(element, into, look | self._styled(element))
             case "s":
                 self.say(into, " " * min(whole(element.get("c")), _MOST_REPEATED), look)
-            case "soft-page-break":
-                into.add("span", role="doc-pagebreak", aria_label=str(next(self._pages)))
             case "note":
-                key = element.get("id") or f"note-{len(self._bodies)}"
-                self._bodies[key] = next(element.iter("note-body"), element)
+                key = element.get("id") or f"note-{len(self.bodies)}"
+                self.bodies[key] = next(element.iter("note-body"), element)
                 self.refer(into, key)
             case "frame":
                 self._frame(element, into, look)
@@ -133,7 +120,7 @@ class _Odt(Document):
                 checked = (box.get("current-state") or box.get("state")) == "checked"
                 into.say("☑" if checked else "☐") if box.name == "checkbox" else into.add("input")
             case name if name in self.names["drawn"] and not any(element.iter("p")):
-                put_picture(into, [], "drawing")
+                into.add("canvas")
             case name:
                 self.inner(element, into.add("div") if name in self.names["drawn"] else into, look)
 
@@ -151,7 +138,7 @@ class _Odt(Document):
             into.children.append(formula)
         else:
             told = [named[name].text for name in ("desc", "title") if name in named]
-            put_picture(into, told, "embedded object" if "object" in named else "picture")
+            put_picture(into, told, "object" if "object" in named else "img")
 
     def _list(self, element: Element, into: Element, look: Look) -> None:
         """Read a list, with the style of the one around it unless it has another."""
@@ -194,7 +181,7 @@ def _look_of(style: Element) -> Look:
     if style.get("list-style-name"):
         look["listed"] = style.get("list-style-name")
     for properties in style.iter("text-properties"):
-        for name, (tag, usual) in _EMPHASES.items():
+        for name, (tag, usual) in _NAMES["emphases"].items():
             value = properties.get(name)
             if value:
                 is_usual = value == usual or (value.isdigit() and int(value) < 600)

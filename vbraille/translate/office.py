@@ -167,6 +167,8 @@ class Document:
         Lists by their keys.
     usual : dict
         Look of all text.
+    bodies : dict
+        Elements of the notes by their keys.
     """
 
     names: dict[str, Any]
@@ -177,6 +179,7 @@ class Document:
         self.styles: dict[str, Look] = {}
         self.lists: dict[str, Numbering] = {}
         self.usual: Look = {}
+        self.bodies: dict[str, Element] = {}
         self._notes: dict[str, str] = {}  # numbers by keys
         self._spoken: Counter[str] = Counter()  # characters of each language
 
@@ -228,27 +231,21 @@ class Document:
         number = self._notes.setdefault(key, str(len(self._notes) + 1))
         into.add("a", number, role="doc-noteref", href=f"#{key}")
 
-    def note_items(self) -> Iterator[tuple[str, Element]]:
-        """Put a list of all notes at the end; give the key and the element of each."""
+    def blocks(self, source: Source, about: Element) -> Iterator[Block]:
+        """Blocks of the document and its notes; its language is that of most of its text."""
         listed = self.body.add("section", role="doc-endnotes").add("ol")
         keys = list(self._notes)
         for key in keys:
-            yield key, listed.add("li", id=key, role="doc-endnote")
+            item = listed.add("li", id=key, role="doc-endnote")
+            self.inner(self.bodies.get(key, Element("")), item, self.usual)
             keys += list(self._notes)[len(keys) :]  # one may refer to others
-
-    def blocks(self, source: Source, about: Element) -> Iterator[Block]:
-        """Blocks of the document, whose language is that of most of its text."""
         source.title = about.said("title")
-        most = [language for language, _ in self._spoken.most_common(1)]
-        usual = self.usual.get("lang") or about.said("language")
-        source.language = "".join(most) or usual
+        most = max(self._spoken, key=self._spoken.__getitem__, default="")
+        source.language = most or self.usual.get("lang") or about.said("language")
         return tree_blocks(source, self.body)
 
 
-def put_picture(into: Element, described: list[str], what: str = "picture") -> None:
+def put_picture(into: Element, described: list[str], name: str = "img", label: str = "") -> None:
     """Put the first text that describes a picture; without one, say what cannot be shown here."""
     told = next((text.strip() for text in described if text.strip()), "")
-    if told or what == "picture":
-        into.add("img", title=told)
-    else:
-        into.add("canvas", aria_label=what.removeprefix("drawing"))
+    into.add("img" if told else name, title=told or label)

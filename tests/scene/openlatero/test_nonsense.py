@@ -11,7 +11,7 @@ from vbraille.render.labels import Assets
 from vbraille.scene.converting import write_scene
 from vbraille.scene.openlatero import read_gen
 from vbraille.scene.openlatero.making import PATTERNS, TEXTURES
-from vbraille.scene.resolving import resolve
+from vbraille.scene.reading import resolve
 from vbraille.scene.scene import Scene
 from vbraille.toml import TomlFile
 

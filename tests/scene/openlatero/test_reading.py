@@ -36,7 +36,7 @@ def test_a_clean_scene_is_taken_over_without_a_word(read):
     assert (found.scene.canvas.width_mm, found.scene.canvas.height_mm) == (289.9, 230.1875)
     assert found.scene.elements == (
         Circle(center_mm=(50, 40), radius_mm=18, stroke=Stroke(width_mm=8, edge_mm=1.5)),
-        LinearGrating(ridge_mm=4, gap_mm=2, start_mm=(3.5, 1.25)),
+        LinearGrating(ridge_mm=4, gap_mm=2, start_mm=(3.5, 1.25), wave_angle_deg=0),
     )
 
 

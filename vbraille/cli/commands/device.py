@@ -138,21 +138,14 @@ def _lead(device: Device, found: Calibration) -> None:
     """Lead a person through the actuators by keys; each finding is kept at once."""
     from vbraille.devices.calibration import save
     from vbraille.devices.events import told
-    from vbraille.engine.calibrating import ActuatorSwings, CalibrationRound
+    from vbraille.engine.calibrating import CalibrationRound
     from vbraille.engine.clock import RealClock
     from vbraille.errors import InputError
     from vbraille.files import settings_path
     from vbraille.reading.keys import Keyboard
     from vbraille.signals import EAR
 
-    turn = CalibrationRound(found)
-    swings = ActuatorSwings(device, RealClock())
-
-    def swing() -> None:
-        swings.rest()
-        device.calibrate(turn.shown)
-        swings.swing(turn.place)
-
+    turn = CalibrationRound(device, RealClock(), found)
     with Keyboard() as keyboard:
         if not keyboard.attached:
             raise InputError("device calibrate is led by keys; start it at a terminal")
@@ -160,13 +153,13 @@ def _lead(device: Device, found: Calibration) -> None:
         say("press h for the keys")
         say(turn.said())
         try:
-            swing()
+            turn.swing()
             while not turn.left:
-                swings.tick()
+                turn.tick()
                 for sentence in told(device.take_events()):
                     say(sentence)
                 if keyboard.must_stop:
-                    swings.rest()
+                    turn.rest()
                     keyboard.stop()
                 for key in keyboard.pressed(0.0):
                     before = turn.found
@@ -175,7 +168,7 @@ def _lead(device: Device, found: Calibration) -> None:
                         save(settings_path(), turn.found)
                     for line in lines:
                         say(line)
-                    swing()
+                    turn.swing()
         finally:
             EAR.close()  # so that the array goes to rest
 

@@ -8,7 +8,7 @@ import click
 
 from vbraille.cli import options
 from vbraille.cli.printing import print_json, say
-from vbraille.cli.settings import origin, settings_of, style_options, use_settings
+from vbraille.cli.settings import STYLE, Context, origin, style_options
 
 
 @click.command(cls=options.Command, epilog="Example: vbraille settings --profile evening")
@@ -35,11 +35,10 @@ def command(ctx: click.Context, name: str, model: str | None, where: bool, json:
     other = group.get_command(root, name)
     if other is None:
         raise click.UsageError(f"unknown command {name!r}; vbraille --help lists them", ctx)
-    with click.Context(other, root, name) as inside:
-        commands = group.list_commands(root)
-        use_settings(inside, chosen["settings"], chosen["profile"], commands, options.SHARED)
+    with Context(other, root, name) as inside:
+        inside.params |= chosen
         rows = _rows(inside, model)
-    settings = settings_of(inside)
+    settings = inside.settings
     there = settings.path.exists()
     if json:
         kept = {"file": str(settings.path), "there": there, "profile": settings.profile}
@@ -55,10 +54,8 @@ def command(ctx: click.Context, name: str, model: str | None, where: bool, json:
             say(f"{table} {key}: {said} ({settings.where(table, key)})")
 
 
-def _rows(inside: click.Context, model: str | None) -> list[dict[str, Any]]:
+def _rows(inside: Context, model: str | None) -> list[dict[str, Any]]:
     """Name, value and origin of each option of a command that a settings file may have."""
-    from vbraille.cli.settings import STYLE
-
     rows = []
     known = [param for param in inside.command.params if param.name in options.SHARED]
     for param in known:

@@ -19,19 +19,13 @@ _FAULTS: Any = {"group": "Faults"}
 _share = options.Number(0, 1)
 
 
-def _defects() -> Iterable[str]:
-    from vbraille.simulation.simulator import Defect
-
-    return (each.value for each in Defect)
-
-
 _press = options.option("--press", metavar="MOVES", default="", help="Moves of buttons and knobs, "
                         "such as 1@2.5s, 2@4s-5s or knob 1 0.8@4s.")  # fmt: skip
 
 
 def _time(name: str, help: str) -> Callable:  # noqa: A002 - click's word
     """Return the option of a time after which, or for which, something goes wrong."""
-    return options.option(name, type=options.Duration(), default=0.0, metavar="TIME", help=help,
+    return options.option(name, type=options.seconds, default="0s", metavar="TIME", help=help,
                           **_FAULTS)  # fmt: skip
 
 
@@ -58,7 +52,8 @@ def command() -> None:
     _time("--unplug-every", "Time between unpluggings, such as 5s; needs --link."),
     _time("--hold", "Time for which a USB adapter holds bytes, such as 16ms."),
     _time("--boot", "Time for which the board starts, such as 1.5s."),
-    options.option("--defect", type=options.Known("defect", _defects), metavar="NAME",
+    options.option("--defect", metavar="NAME",
+                   type=options.Known("defect", "vbraille.simulation.simulator", "Defect"),
                    help="Way in which it is built wrong.", **_FAULTS),
 )  # fmt: skip
 def serial(**chosen: Any) -> None:
@@ -123,7 +118,7 @@ def serial(**chosen: Any) -> None:
     options.option("--udp-port", type=options.whole(0, 65_535), help="UDP port; 0 for any."),
     options.option("--page-lines", type=options.whole(1, 15), metavar="N", default=1,
                    help="Lines of the page that the hand reads."),
-    options.option("--wait", type=options.Duration(), default=1.0, metavar="TIME",
+    options.option("--wait", type=options.seconds, default="1s", metavar="TIME",
                    help="Time for which the hand waits at the lower left."),
     _press,
 )  # fmt: skip

@@ -1,4 +1,13 @@
-"""Elements of OpenLatero's files, read leniently by a table of what may stand in each."""
+"""Elements of OpenLatero's files, read leniently by a table of what may stand in each.
+
+What is not understood, or is taken otherwise, is said. A row of the table has the name of an
+element, its kind, what is usual, its range where it is not that of the kind, and after ``>`` the
+name that it has in our scenes. Kinds are units, ``number`` for none, ``turn`` for an angle,
+``yesno``, ``place``, ``words`` of which the first is usual, with ours after ``=``, ``speed`` in a
+unit or in Hz, ``text``, ``pattern``, ``unused``, ``unshown``, of which that is said, and
+``patterns``, ``places`` and ``sounds``, of which there may be several; all others are names of
+parts. A part or a type may stand at several places.
+"""
 
 from __future__ import annotations
 
@@ -74,7 +83,7 @@ texture                                               # of every type
 Vibration
   freq                 Hz        50
 LinearGrating
-  angle                °         0
+  angle                turn      0                    > wave_angle_deg
   seed                 place     0,0                  > start_mm
   Grating              wave
 RadialGrating
@@ -82,7 +91,7 @@ RadialGrating
   Grating              wave
 AxialGrating
   seed                 place     0,0                  > center_mm
-  seed_angle           °         0
+  seed_angle           turn      0                    > start_deg
   Grating              turning_wave
 DoubleLinearGrating
   seed                 place     0,0
@@ -102,7 +111,7 @@ Blend
   Pattern              patterns
 Motion
   cue_type             words     none | vibration bands | superposed bands | superposed vibration bands | disabling bands | blending bands
-  direction            °         0
+  direction            turn      0
   velocity             mm/s      50
   Pattern              pattern
 Pattern
@@ -117,8 +126,8 @@ modulator                                             # Velocity
   transition           mm/s      5       0.1..1000
   delay                ms        500
 modulator                                             # Directional
-  low_velocity_mode    words     toggle | high | low
-  direction            °         0
+  low_velocity_mode    words     toggle=keep | high | low       > at_rest
+  direction            turn      0                              > angle_deg
   symmetric            yesno     no                             > axis
   direction_tolerance  °         30      0..180       > tolerance_deg
   direction_transition °         20      0.1..180     > transition_deg
@@ -194,7 +203,7 @@ along
   invert               unshown
   PitchModulator       unshown
 cue
-  cue                  words     none | inherent | superposed | suppressed | vibration | blend
+  cue                  words     none | inherent | superposed=add | suppressed=mask | vibration=vibrate | blend
   velocity             mm/s      50
   superposed_ratio     share     0.2                 > share
   blend_value          share     0.5
@@ -215,11 +224,11 @@ fill_texture
 vertices
   vertex               places    0,0
 join
-  type                 words     round | straight
-  rounding_offset      mm        0
+  type                 words     round=rounded | straight       > join
+  rounding_offset      mm        0                    > rounding_offset_mm
 corner
   enable               yesno     no
-  span                 words     circle intercept | user specified | arc | right-angled
+  span                 words     circle intercept=edges | user specified=angle | arc | right-angled=square > span
   type                 words     solid | invert vib
   user_angle           °         30      1..180
   blend                words     out | in
@@ -426,14 +435,17 @@ class Element:
         if kind == "yesno":
             return leaf.yes_no(usual)
         if kind == "words":
-            words = [word.strip() for word in row.usual.split("|")]
-            return leaf.word(leaf.text if leaf.there else words[0], words, words[0])
+            words = dict(word.strip().partition("=")[::2] for word in row.usual.split("|"))
+            known = leaf.word(leaf.text, words, next(iter(words)))
+            return words[known] or known
         if kind == "place":
             x, y = map(float, usual.split(","))
             return leaf.place((x, y))
         if kind == "speed":
             in_hertz = leaf.attribute("units") == "Hz"
             return leaf.number(0.0, "Hz" if in_hertz else more[-1], -1e6, 1e6), in_hertz
+        if kind == "turn":
+            return math.fmod(leaf.number(float(usual), "°", *_LIMITS["°"]), 360.0)
         if kind in _LIMITS:
             low, high = map(float, more[-1].split("..")) if more else _LIMITS[kind]
             return leaf.number(float(usual), kind, low, high)
@@ -468,6 +480,8 @@ class Element:
 
     def word(self, text: str, words: Iterable[str], usual: str) -> str:
         """One of a few words for a text, or the usual one for others, which is said."""
+        if not self.there:
+            return usual
         for known in (text, text.lower()):
             if known in words:
                 return known

@@ -9,13 +9,13 @@ from __future__ import annotations
 import math
 from itertools import groupby
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final
 
 from msgspec.structs import replace
 
 from vbraille.errors import InputError, needing_extras
 from vbraille.scene.geometry import joints, rounding_radius_mm, rows_of
-from vbraille.scene.imagefiles import ImageFile
+from vbraille.scene.images import ImageFile
 from vbraille.scene.measures import LEAST_MM, MOST_MM
 from vbraille.scene.openlatero.elements import Element
 from vbraille.scene.patterns import (
@@ -74,23 +74,6 @@ OPERATIONS: Final[dict[str, Operation]] = {
     "max": "maximum",
     "blend": "blend",
     "overwrite": "overwrite",
-}
-_WAYS: Final[dict[str, Literal["add", "mask", "blend", "vibrate"]]] = {
-    "superposed": "add",
-    "suppressed": "mask",
-    "vibration": "vibrate",
-    "blend": "blend",
-}
-_SPANS: Final[dict[str, Literal["angle", "arc", "edges", "square"]]] = {
-    "user specified": "angle",
-    "arc": "arc",
-    "circle intercept": "edges",
-    "right-angled": "square",
-}
-_AT_REST: Final[dict[str, Literal["high", "low", "keep"]]] = {
-    "high": "high",
-    "low": "low",
-    "toggle": "keep",
 }
 # Textures whose amplitude, inversion and vibration OpenLatero does not read.
 _UNREAD = ("DoubleLinearGrating", "Motion", "Pattern")
@@ -196,9 +179,7 @@ def _reacting(modulator: Element, first: Made, second: Made) -> AnyPattern:
             delay_s=modulator.delay / 2000.0,
         )
     else:
-        at_rest = _AT_REST[modulator.low_velocity_mode]
-        angle = _turned(modulator.direction)
-        signal = Direction(**modulator.here, angle_deg=angle, at_rest=at_rest)
+        signal = Direction(**modulator.here)
     by = SignalLevel(name=modulator.context.signal(name, signal))
     return Group(operation="blend", parts=(second or _NOTHING, first or _NOTHING), by=by)
 
@@ -322,11 +303,6 @@ def _in(folder: Path, error: Exception) -> str:
 # Textures
 
 
-def _turned(angle_deg: float) -> float:
-    """Angle within a turn."""
-    return math.fmod(angle_deg, 360.0)
-
-
 def _changed(
     part: AnyPattern, amplitude: float, inverted: bool = False, vibration: Vibration | None = None
 ) -> AnyPattern:
@@ -376,7 +352,7 @@ def _vibration(element: Element) -> Made:
 
 
 def _linear(element: Element) -> Made:
-    return _grating(element, LinearGrating, wave_angle_deg=_turned(element.angle) or None)
+    return _grating(element, LinearGrating)
 
 
 def _radial(element: Element) -> Made:
@@ -389,8 +365,7 @@ def _axial(element: Element) -> Made:
         wave.gap_size = 360.0 - wave.ridge_size
         wave.say(f"its ridge and gap are more than a turn; a gap of {wave.gap_size:g}° is taken")
     middle = float(not wave.invert)  # it is inverted with the grating
-    start = _turned(element.seed_angle)
-    return _grating(element, AxialGrating, whole_cycles=False, start_deg=start, middle=middle)
+    return _grating(element, AxialGrating, whole_cycles=False, middle=middle)
 
 
 def _grating(element: Element, kind: Callable[..., AnyPattern], **more: Any) -> Made:
@@ -441,7 +416,7 @@ def _double(element: Element) -> Made:
         grating = LinearGrating(
             ridge_mm=ridge * scale,
             gap_mm=min(gap * scale, MOST_MM),
-            wave_angle_deg=_turned(angle) or None,
+            wave_angle_deg=math.fmod(angle, 360.0),
             start_mm=element.seed,
         )
         both.append(_changed(_across(element.motion, grating), amplitude))
@@ -468,7 +443,7 @@ def _motion(element: Element) -> Made:
     wave = LinearGrating(
         ridge_mm=ridge,
         gap_mm=gap,
-        wave_angle_deg=_turned(element.direction) or None,
+        wave_angle_deg=element.direction,
         velocity_mm_s=context.truncated(element.velocity, ridge + gap),
     )
     bands = Moving(part=wave, array_at_mm=(0.0, 0.0))
@@ -629,8 +604,8 @@ def _stroke(stroke: Element, plain: Stroke, vibration: Vibration | None) -> Stro
 
 def _cue(motion: Element) -> MovingCue | None:
     """Bands that move along a shape; None for none."""
-    way, level, bands = _WAYS.get(motion.cue), motion.blend_value, motion.Grating
-    if way is None:
+    way, level, bands = motion.cue, motion.blend_value, motion.Grating
+    if way in ("none", "inherent"):
         return None
     if not bands.enable or bands.ridge_size < LEAST_MM:
         motion.say("its cue has no bands; left out")
@@ -710,17 +685,10 @@ def _polygon(element: Element) -> Made:
         lost = " and its markers are left out" if markers is not None else ""
         element.say(f"its edges cross, so it is a path here; textures jump at its corners{lost}")
         return PathShape(contours_mm=(vertices,), closed=True, **look)
-    rounded = element.join.type == "round"
-    polygon = Polygon(
-        vertices_mm=vertices,
-        join="rounded" if rounded else "straight",
-        rounding_offset_mm=element.join.rounding_offset,
-        markers=markers,
-        **look,
-    )
+    polygon = Polygon(vertices_mm=vertices, **element.join.here, markers=markers, **look)
     along = polygon.stroke is not None and polygon.stroke.along is not None
     wanted = rounding_radius_mm(polygon)
-    if (markers is not None or (rounded and along)) and any(
+    if (markers is not None or (polygon.join == "rounded" and along)) and any(
         joint.radius_mm < wanted for joint in joints(vertices, wanted)
     ):
         element.say("an edge is too short for the round joints at its ends, which are smaller here")
@@ -741,8 +709,8 @@ def _markers(corner: Element, look: dict[str, Any]) -> VertexMarkers | None:
         if stroke.along is not None or stroke.outlined:
             corner.say("markers are plain here, and have the texture of the stroke there")
         vibration = Vibration() if stroke.vibration is None else None
-    angle = corner.user_angle if corner.span == "user specified" else 30.0
-    markers = VertexMarkers(**corner.here, span=_SPANS[corner.span], angle_deg=angle)
+    angle = corner.user_angle if corner.span == "angle" else 30.0
+    markers = VertexMarkers(**corner.here, angle_deg=angle)
     if vibration is None:
         return replace(markers, plain=True)
     return replace(markers, vibration=vibration)

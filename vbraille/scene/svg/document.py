@@ -31,7 +31,6 @@ INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 _XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
 MOST_BYTES = 50 << 20
 MOST_ELEMENTS = 50_000
-_PIECE = 1 << 16
 _LONGEST_NAME, LONGEST_TEXT = 200, 2000
 # Ids that programs give by themselves say nothing, and are the same in many drawings.
 _GIVEN = re.compile(
@@ -61,8 +60,10 @@ def read_tree(path: Path) -> Element:
     content = read_bytes(path, MOST_BYTES)
     if content.startswith(b"\x1f\x8b"):
         raise InputError(f"{path} is a compressed SVG; save it as a plain one")
-    parser = etree.XMLPullParser(
-        ("start",),
+    too_many = f"{path} has more than {MOST_ELEMENTS} elements; draw it with fewer"
+    if content.count(b"<") > 3 * MOST_ELEMENTS:  # most have two, and it is not read for nothing
+        raise InputError(too_many)
+    parser = etree.XMLParser(
         resolve_entities="internal",  # pyright: ignore[reportArgumentType] - since lxml 5
         no_network=True,
         load_dtd=False,
@@ -70,16 +71,8 @@ def read_tree(path: Path) -> Element:
         remove_comments=True,
         remove_pis=True,
     )
-    count = 0
     try:
-        for start in range(0, len(content), _PIECE):
-            parser.feed(content[start : start + _PIECE])
-            count += sum(1 for _ in parser.read_events())
-            if count > MOST_ELEMENTS:
-                raise InputError(
-                    f"{path} has more than {MOST_ELEMENTS} elements; draw it with fewer"
-                )
-        root = parser.close()
+        root = etree.fromstring(content, parser)
     except etree.XMLSyntaxError as error:
         problem = short(error.msg or "it ends too soon", 150)
         if "depth" in problem.lower():
@@ -89,6 +82,8 @@ def read_tree(path: Path) -> Element:
                 f"{path} has entities that cannot be replaced: {problem}; save it without them"
             ) from None
         raise InputError(f"{path} is not well-formed XML: {problem}") from None
+    if sum(1 for _ in root.iter()) > MOST_ELEMENTS:
+        raise InputError(too_many)
     if root.tag not in (f"{SVG}svg", "svg"):
         raise InputError(f"{path} is not SVG: it is a document of {short(str(root.tag))}")
     return root
@@ -162,6 +157,9 @@ PX_MM = 25.4 / 96
 _UNITS = {"": 1.0, "px": 1.0, "pt": 96 / 72, "pc": 16.0, "mm": 96 / 25.4, "cm": 960 / 25.4,
           "in": 96.0, "q": 24 / 25.4, "rem": 16.0,
           "deg": 1.0, "grad": 0.9, "rad": 180 / math.pi, "turn": 360.0}  # fmt: skip
+_OF_LETTERS = {"em": 1.0, "ic": 1.0, "ex": 0.5, "ch": 0.5}
+# Percentages of the page: its width, its height, and the smaller and the larger of these.
+_OF_PAGE = {"vw": 0, "vi": 0, "vh": 1, "vb": 1, "vmin": 2, "vmax": 3}
 _FUNCTIONS: dict[str, Callable[..., float]] = {
     "calc": lambda value: value,
     "min": lambda *values: min(values),
@@ -237,14 +235,14 @@ class Units:
         if token.type == "function":
             values = [self._sum(one, whole) for one in arguments_of(token)]
             return _FUNCTIONS[token.lower_name](*values)
-        unit = "%" if token.type == "percentage" else getattr(token, "lower_unit", "")
-        if unit in _UNITS:
-            return token.value * _UNITS[unit]
-        (width, height), font = self.page, self.font
-        sizes = {"%": whole, "em": font * 100, "ic": font * 100, "ex": font * 50, "ch": font * 50,
-                 "vw": width, "vi": width, "vh": height, "vb": height,
-                 "vmin": min(width, height), "vmax": max(width, height)}  # fmt: skip
-        return token.value * sizes[unit] / 100
+        if token.type == "percentage":
+            return token.value * whole / 100
+        unit = getattr(token, "lower_unit", "")
+        if unit in _OF_LETTERS:
+            return token.value * self.font * _OF_LETTERS[unit]
+        if unit in _OF_PAGE:
+            return token.value / 100 * (*self.page, *sorted(self.page))[_OF_PAGE[unit]]
+        return token.value * _UNITS[unit]
 
     def _sum(self, tokens: Sequence[Any], whole: float) -> float:
         """Value of numbers with operators between them."""
@@ -252,17 +250,12 @@ class Units:
         terms = [self.number(shown[0], whole)]
         for operator, token in zip(shown[1::2], shown[2::2], strict=True):
             value = self.number(token, whole)
-            match operator.value:
-                case "+":
-                    terms.append(value)
-                case "-":
-                    terms.append(-value)
-                case "*":
-                    terms[-1] *= value
-                case "/":
-                    terms[-1] /= value
-                case _:
-                    raise ValueError("no operator")
+            if operator == "*":
+                terms[-1] *= value
+            elif operator == "/":
+                terms[-1] /= value
+            else:
+                terms.append({"+": value, "-": -value}[operator.value])
         return sum(terms)
 
 
@@ -605,13 +598,11 @@ class StyleSheets:
         self._matched: dict[Element, list[Declaration]] = {}
         sheets = [element for element in root.iter() if name_of(element) == "style"]
         for element in sheets:
-            css = text_of(element)
-            if (element.get("type") or "text/css").strip() not in ("text/css", ""):
-                note(element, "the style sheet is not CSS; it is ignored")
-            elif (element.get("media") or "").strip().lower() not in _MEDIA:
-                note(element, f"the style sheet is for {element.get('media')}; it is ignored")
-            elif len(css) > _MOST_CSS:
-                note(element, f"the style sheet has over {_MOST_CSS} characters; it is ignored")
+            css, kind = text_of(element), (element.get("type") or "text/css").strip()
+            media = (element.get("media") or "").strip().lower()
+            if kind not in ("text/css", "") or media not in _MEDIA or len(css) > _MOST_CSS:
+                note(element, f"the style sheet is not CSS for a screen, or has over {_MOST_CSS} "
+                     "characters; it is ignored")  # fmt: skip
             else:
                 self._take(element, tinycss2.parse_stylesheet(css, True, True))
         start = time.process_time()

@@ -37,40 +37,35 @@ def check_picture(protocol: Protocol, stimulus: Stimulus) -> None:
     """
     if not protocol.display_model.display.height_mm:
         raise ValueError("the model's carriage goes along one line only; give 'pantograph'")
-    check_fits(_picture(protocol, stimulus).resolved, protocol.display_model.display)
+    check_fits(picture(protocol, stimulus).resolved, protocol.display_model.display)
 
 
-def compile_picture(protocol: Protocol, stimulus: Stimulus) -> Program:
+def compile_picture(protocol: Protocol, opened: OpenedScene, contrast: float) -> Program:
     """Compile a picture for the protocol's display."""
     display = protocol.display_model.display
-    loaded = shown_at(_picture(protocol, stimulus), Assets())
-    contrast = protocol.style(stimulus.look).tuning.contrast
+    loaded = shown_at(opened, Assets())
     return compose(loaded, display, rate_hz=display.rate_hz, contrast=contrast)
 
 
-def canvas_mm(protocol: Protocol, stimulus: Stimulus) -> tuple[float, float]:
-    """Return the width and the height of a picture's canvas."""
-    canvas = _picture(protocol, stimulus).resolved.canvas
-    return canvas.width_mm, canvas.height_mm
+def picture(protocol: Protocol, stimulus: Stimulus) -> OpenedScene:
+    """Return the scene with the elements of a picture alone.
 
-
-def _picture(protocol: Protocol, stimulus: Stimulus) -> OpenedScene:
-    """Return the scene with the elements of a picture alone."""
-    name = stimulus.look.scene
-    assert name is not None, "a picture is of a scene"
-    opened, names = _scene(protocol.files[name], name), stimulus.picture.split()
+    Raises
+    ------
+    ValueError
+        If the scene lacks one.
+    InputError
+        If the scene cannot be used.
+    """
+    scene, wanted = stimulus.look.scene or "", stimulus.picture.split()
+    opened = _scene(protocol.files[scene], scene)
     known = [element.id for element in opened.written.elements]
-    for wanted in names:
-        if wanted not in known:
-            raise ValueError(
-                f"{name} has no element {wanted!r}{which(wanted, filter(None, known))}"
-            )
-    elements = tuple(
-        element
-        for element, own in zip(opened.resolved.elements, known, strict=True)
-        if not own or own in names
-    )
-    return replace(opened, resolved=structs.replace(opened.resolved, elements=elements))
+    for name in wanted:
+        if name not in known:
+            raise ValueError(f"{scene} has no element {name!r}{which(name, filter(None, known))}")
+    pairs = zip(opened.written.elements, opened.resolved.elements, strict=True)
+    shown = tuple(resolved for own, resolved in pairs if not own.id or own.id in wanted)
+    return replace(opened, resolved=structs.replace(opened.resolved, elements=shown))
 
 
 @lru_cache(maxsize=16)

@@ -38,13 +38,15 @@ class Shown(NamedTuple):
 
 def make_shown(protocol: Protocol, stimulus: Stimulus) -> Shown:
     """Compile a stimulus, with blank cells before a string."""
+    style = protocol.style(stimulus.look)
     if stimulus.picture:
         # This loads what compiles pictures; protocols of strings need none of it.
-        from vbraille.sessions.planning.pictures import canvas_mm, compile_picture
+        from vbraille.sessions.planning.pictures import compile_picture, picture
 
-        program = compile_picture(protocol, stimulus)
-        return Shown(program, None, (), canvas_mm(protocol, stimulus))
-    style = protocol.style(stimulus.look)
+        opened = picture(protocol, stimulus)
+        canvas = opened.resolved.canvas
+        program = compile_picture(protocol, opened, style.tuning.contrast)
+        return Shown(program, None, (), (canvas.width_mm, canvas.height_mm))
     masks = np.array(stimulus.masks(protocol.display.lead_cells), np.uint8)
     program = style.render(masks, protocol.display_model.display)
     return Shown(program, width_mm(protocol, stimulus), edges_mm(protocol, stimulus))
@@ -53,9 +55,9 @@ def make_shown(protocol: Protocol, stimulus: Stimulus) -> Shown:
 def width_mm(protocol: Protocol, stimulus: Stimulus) -> float:
     """Return the length of the line that a string is in, or the width of a picture's canvas."""
     if stimulus.picture:
-        from vbraille.sessions.planning.pictures import canvas_mm
+        from vbraille.sessions.planning.pictures import picture
 
-        return canvas_mm(protocol, stimulus)[0]
+        return picture(protocol, stimulus).resolved.canvas.width_mm
     cells = stimulus.masks(protocol.display.lead_cells)
     return protocol.style(stimulus.look).geometry.extent_mm(len(cells))
 

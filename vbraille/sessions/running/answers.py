@@ -13,7 +13,7 @@ from typing import Any, Literal, NamedTuple
 from vbraille.errors import InputError
 from vbraille.sessions.planning.questionnaire import Item
 from vbraille.sessions.planning.trial import Trial
-from vbraille.sessions.simulated.skin import FeltFrames
+from vbraille.sessions.simulated.observer import FeltFrames
 
 
 class Asked(NamedTuple):

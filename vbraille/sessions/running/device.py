@@ -30,7 +30,7 @@ from vbraille.sessions.running.answers import Answers
 from vbraille.sessions.running.conditions import Conditions
 from vbraille.sessions.running.presenter import Happening, Presenter
 from vbraille.sessions.running.reader import random_of
-from vbraille.sessions.simulated.skin import FeltFrames
+from vbraille.sessions.simulated.observer import FeltFrames
 from vbraille.simulation import steering
 from vbraille.simulation.specs import device_spec, is_simulated
 from vbraille.wording import setting

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from vbraille.devices.events import Button, Knob
 from vbraille.sessions.planning.trial import Stimulus
-from vbraille.sessions.simulated.skin import FeltFrames
+from vbraille.sessions.simulated.observer import FeltFrames
 
 
 class Happening(NamedTuple):

@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vbraille.sessions.simulated.observer import Observer
-from vbraille.sessions.simulated.skin import FeltFrames
+from vbraille.sessions.simulated.observer import FeltFrames, Observer
 
 WIDTH, GAP, SPACING, CELL_GAP = "dot_width_mm", "dot_gap_mm", "dot_spacing_mm", "cell_gap_mm"
 LENGTHS = (WIDTH, GAP, SPACING, CELL_GAP)
@@ -94,7 +93,8 @@ class FeltTrial:
 
     def cells(self) -> list[int | None]:
         """Dot masks of the cells asked for; None for a cell that was not read."""
-        return self.observer.read(self.felt[0], self.places[0], self.random)[self.asked]
+        evidence = self.observer.felt(self.felt[0], self.places[0])
+        return self.observer.answer(evidence, self.random)[self.asked]
 
     def strength(self, stimulus: int = 0) -> float:
         """Strength of the strongest dot asked for, in units of E₀; 0 if the hand was on none."""

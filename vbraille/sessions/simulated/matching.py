@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vbraille.sessions.simulated.skin import FeltFrames
+from vbraille.sessions.simulated.observer import FeltFrames
 
 MOMENTS = 48
 _WINDOW_S = 0.02

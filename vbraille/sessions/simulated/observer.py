@@ -48,29 +48,172 @@ chosen.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vbraille.braille.cells import PLACES, mask_of
-from vbraille.sessions.simulated.skin import (
-    STILL_MM_S,
-    FeltFrames,
-    Wave,
-    reference_per_mm2,
-    smoothing_mm,
-)
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from vbraille.display import Display
     from vbraille.render.braille.style import BrailleStyle
 
+Floats = NDArray[np.float64]
+
+CUTOFF_HZ = 200.0
+FINEST_MM = 0.02
+STILL_MM_S = 1.0
+SPEED_SPAN_S = 0.02  # time for measuring a speed; counts of 45 µm make it 2 mm/s exact
+MOST_MM_S = 1000.0
 PLACE_MM = 0.005
 LEAST_FELT = 1e-3  # least evidence, in units of E₀, that counts as felt
 LEAST_SWING = 1e-4  # least swing, as a share of the largest; at rest it is exactly 0
 APART = 0.1  # gap that parts two dots, in units of the nominal dot width
+_REACHED = 0.9  # share of a way that must have been felt
+_MOST = 1000  # points of a dot
+_LEAST = np.finfo(float).tiny
+_TAILS = 4  # reach of a kernel in standard deviations
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FeltFrames:
+    """Frames that a hand was given, with places and times, tick by tick.
+
+    Parameters
+    ----------
+    frames : float[n, rows, columns]
+        Deflections that were sent, 0 … 1.
+    x_mm : float64[n]
+        Places of the array's centre; NaN where one is not known.
+    time_s : float64[n]
+        Times of the ticks, counted from any moment.
+    y_mm, theta_rad : float64[n], optional
+        Places down the canvas, and angles by which the array is turned, where a picture is felt.
+    """
+
+    frames: NDArray[np.floating]
+    x_mm: Floats
+    time_s: Floats
+    y_mm: Floats | None = None
+    theta_rad: Floats | None = None
+
+    def within(self, low_mm: float, high_mm: float) -> FeltFrames:
+        """Ticks whose place is known, with the array's centre between two places."""
+        near = (self.x_mm >= low_mm) & (self.x_mm <= high_mm)
+        if near.all():
+            return self
+        return FeltFrames(self.frames[near], self.x_mm[near], self.time_s[near])
+
+    def speeds_mm_s(self) -> Floats:
+        """Speed at each tick, never negative; float64[n]."""
+        before = np.maximum(self.time_s - SPEED_SPAN_S / 2, self.time_s[0])
+        after = np.minimum(self.time_s + SPEED_SPAN_S / 2, self.time_s[-1])
+        way = np.interp(after, self.time_s, self.x_mm) - np.interp(before, self.time_s, self.x_mm)
+        return np.abs(way) / np.maximum(after - before, 1e-9)
+
+
+def smoothing_mm(speed_mm_s: float) -> float:
+    """Width σ of the smoothing by equation 2 at a speed, in mm."""
+    per_mm_s = math.sqrt(math.log(2)) / (2 * math.pi * CUTOFF_HZ)
+    return math.hypot(FINEST_MM, min(speed_mm_s, MOST_MM_S) * per_mm_s)
+
+
+def reference_per_mm2(width_mm: float, pitch_mm: float) -> float:
+    """Unit of evidence E₀: equation 3 for the wave [1 + cos(2πu/W)] / 2, not smoothed."""
+    u_mm = (np.arange(1000) + 0.5) / 1000 * width_mm - width_mm / 2
+
+    def slope(at_mm: NDArray[np.float64]) -> NDArray[np.float64]:
+        inside = np.abs(at_mm) < width_mm / 2
+        return np.where(inside, -np.sin(2 * np.pi * at_mm / width_mm) * np.pi / width_mm, 0.0)
+
+    rate = (slope(u_mm + pitch_mm / 2) - slope(u_mm - pitch_mm / 2)) / pitch_mm
+    return float(np.sqrt(np.mean(rate**2)))
+
+
+class Wave(NamedTuple):
+    """Strains or swings felt along a line, at the places that sensors came over.
+
+    Parameters
+    ----------
+    u_mm : float64[m]
+        Places along the line, increasing.
+    felt : float64[m, channels]
+        Strongest values that were felt at each place.
+    """
+
+    u_mm: Floats
+    felt: Floats
+
+    @classmethod
+    def best(cls, x_mm: Floats, felt: NDArray[np.floating], pitch_mm: float) -> Wave:
+        """Keep the strongest values that were felt at each place.
+
+        Of all that sensors felt at one place of the line, what had most energy is kept. So each
+        value was really felt, exactly where it says.
+
+        Parameters
+        ----------
+        x_mm : float64[n]
+            Places of the first sensor, n > 0.
+        felt : float[n, sensors, channels]
+            Values felt by sensors that stand a pitch apart.
+        pitch_mm
+            Distance between two sensors, which is a whole number of places.
+        """
+        u_mm = (x_mm[:, None] + pitch_mm * np.arange(felt.shape[1])).ravel()
+        values = felt.reshape(u_mm.size, -1).astype(np.float64)
+        place = ((u_mm - u_mm.min()) / _place_mm(pitch_mm)).astype(np.intp)
+        order = np.lexsort(((values**2).sum(axis=1), place))
+        kept = order[np.append(np.diff(place[order]) > 0, True)]
+        kept = kept[np.argsort(u_mm[kept])]
+        return cls(u_mm[kept], values[kept])
+
+    def rms_rates(
+        self, left_mm: float, right_mm: float, sigma_mm: float, step_mm: float, gap_mm: float
+    ) -> Floats:
+        """Rms rates of the smoothed wave between two places, by equation 3.
+
+        The smoothed wave is a weighted mean. The weight of a value is the length of the line that
+        it stands for, times a Gaussian of its distance. The sum is divided by that of the weights,
+        so that uneven places do not look like waves.
+
+        Parameters
+        ----------
+        sigma_mm
+            Width of the smoothing.
+        step_mm
+            Distance between the points at which the rate is taken.
+        gap_mm
+            Longest distance between two values between which the line counts as felt.
+
+        Returns
+        -------
+        float64[channels]
+            Rates; NaN if too little of the way was felt.
+        """
+        points = min(round((right_mm - left_mm) / step_mm), _MOST)
+        at_mm, step_mm = np.linspace(left_mm, right_mm, points + 1, retstep=True)
+        gaps_mm = np.diff(self.u_mm)
+        halves = np.minimum(gaps_mm, gap_mm) / 2
+        stands_for = np.append(halves, gap_mm / 2) + np.append(gap_mm / 2, halves)
+        after = np.searchsorted(self.u_mm, at_mm[:-1] + step_mm / 2)
+        covered = np.concatenate(([False], gaps_mm <= gap_mm, [False]))[after]
+        if np.mean(covered) < _REACHED:
+            return np.full(self.felt.shape[1], np.nan)
+        reach_mm = _TAILS * sigma_mm
+        near = slice(*np.searchsorted(self.u_mm, (left_mm - reach_mm, right_mm + reach_mm)))
+        away = (at_mm[:, None] - self.u_mm[near]) / sigma_mm
+        weights = np.exp(-(away**2) / 2) * stands_for[near]
+        smooth = weights @ self.felt[near] / np.maximum(weights.sum(axis=1, keepdims=True), _LEAST)
+        rates = np.diff(smooth, axis=0)[covered] / step_mm
+        return np.sqrt(np.mean(rates**2, axis=0))
+
+
+def _place_mm(pitch_mm: float) -> float:
+    """Length of a place, of which a pitch has a whole number."""
+    return pitch_mm / math.ceil(pitch_mm / PLACE_MM)
 
 
 class Observer:
@@ -90,26 +233,22 @@ class Observer:
         self.array = array
         self.geometry = style.geometry
         self.noise = noise
-        self._half_mm = array.span_mm / 2
-        self._steps = math.ceil(array.column_pitch_mm / PLACE_MM)
         # Rows that show the same dots are one channel; each dot has the number of its channel.
         tables = mapping.left, mapping.right
-        rows = {}
-        for dot, (side, dot_row) in PLACES.items():
-            if dot_row in tables[side]:
-                rows[dot] = tuple(r for r, shown in enumerate(tables[side]) if shown == dot_row)
+        rows = {
+            dot: tuple(r for r, shown in enumerate(tables[side]) if shown == dot_row)
+            for dot, (side, dot_row) in PLACES.items()
+            if dot_row in tables[side]
+        }
         kinds = sorted({*rows.values()})
         self._channels = {dot: kinds.index(kind) for dot, kind in rows.items()}
-        # A frame times these weights gives strains of pairs, or swings of columns, in each channel.
+        # A column of a frame times these weights is its swing in each channel.
         signs = 1 - 2 * mapping.idle()
-        weights = np.zeros((array.rows, len(kinds)))
+        self._weights = np.zeros((array.rows, len(kinds)), np.float32)
         for channel, kind in enumerate(kinds):
-            weights[own][list(kind), channel] = signs[list(kind)] / len(kind)
-        differences = np.diff(np.eye(array.columns), axis=1) / array.column_pitch_mm
-        self._pairs = _per_frame(weights, differences)
-        self._swings = _per_frame(weights, np.eye(array.columns))
+            self._weights[own][list(kind), channel] = signs[list(kind)] / len(kind)
 
-    def felt(self, exploration: FeltFrames, places: int) -> NDArray[np.float64]:
+    def felt(self, exploration: FeltFrames, places: int) -> Floats:
         """Evidence that an exploration gives of the dots of the first cells of a line.
 
         Parameters
@@ -126,34 +265,31 @@ class Observer:
             not show.
         """
         geometry, pitch_mm = self.geometry, self.array.column_pitch_mm
+        width_mm = geometry.dot_width_mm
         evidence = np.full((places, 8), np.nan)
         near = self._near(exploration, geometry.extent_mm(places))
         if not near.x_mm.size:
             return evidence
-        strain = self._felt(near, self._pairs)
         # Distance of the outermost pair from the centre.
-        reach_mm = self._half_mm - 0.5 * pitch_mm
-        between_mm = near.x_mm - reach_mm
-        wave = Wave.best(between_mm, strain, pitch_mm, self._steps)
-        points = pitch_mm / self._steps, geometry.dot_width_mm / 2
+        reach_mm = (self.array.span_mm - pitch_mm) / 2
+        strain = np.diff(self._swings(near), axis=1) / pitch_mm
+        wave = Wave.best(near.x_mm - reach_mm, strain, pitch_mm)
         speeds = near.speeds_mm_s()
         moving = speeds > STILL_MM_S
         for place in range(places):
             for side in (0, 1):
                 left_mm = place * geometry.cell_pitch_mm + side * geometry.dot_spacing_mm
-                right_mm = left_mm + geometry.dot_width_mm
+                right_mm = left_mm + width_mm
                 over = (near.x_mm >= left_mm - reach_mm) & (near.x_mm <= right_mm + reach_mm)
                 over &= moving
-                speed_mm_s = float(np.median(speeds[over])) if over.any() else 0.0
-                rms = wave.rms_rates(left_mm, right_mm, smoothing_mm(speed_mm_s), *points)
+                sigma_mm = smoothing_mm(float(np.median(speeds[over])) if over.any() else 0.0)
+                rms = wave.rms_rates(left_mm, right_mm, sigma_mm, _place_mm(pitch_mm), width_mm / 2)
                 for dot, channel in self._channels.items():
                     if PLACES[dot][0] == side:
                         evidence[place, dot - 1] = rms[channel]
-        return evidence / reference_per_mm2(geometry.dot_width_mm, pitch_mm)
+        return evidence / reference_per_mm2(width_mm, pitch_mm)
 
-    def answer(
-        self, evidence: NDArray[np.float64], random: np.random.Generator
-    ) -> list[int | None]:
+    def answer(self, evidence: Floats, random: np.random.Generator) -> list[int | None]:
         """Dot masks of the cells felt; None for a cell without the hand, or if nothing was felt."""
         noisy = evidence + self.noise * random.standard_normal(evidence.shape)
         if not (evidence > LEAST_FELT).any():
@@ -164,13 +300,7 @@ class Observer:
         rows = zip(masks, noisy, strict=True)
         return [None if np.isnan(row).all() else int(mask) for mask, row in rows]
 
-    def read(
-        self, exploration: FeltFrames, places: int, random: np.random.Generator
-    ) -> list[int | None]:
-        """Dot masks of the first cells of a line; see `felt` and `answer`."""
-        return self.answer(self.felt(exploration, places), random)
-
-    def dots_mm(self, exploration: FeltFrames) -> NDArray[np.float64]:
+    def dots_mm(self, exploration: FeltFrames) -> Floats:
         """Find where each dot column of a line begins and ends, as far as dots were felt.
 
         Returns
@@ -181,36 +311,25 @@ class Observer:
         near = self._near(exploration, self.geometry.travel_mm)
         if not near.x_mm.size:
             return np.empty((0, 2))
-        swing = self._felt(near, self._swings)
+        swing = self._swings(near)
         swing -= swing.min(axis=1, keepdims=True)
-        left_mm = near.x_mm - self._half_mm
-        wave = Wave.best(left_mm, swing, self.array.column_pitch_mm, self._steps)
-        strength = wave.felt.max(axis=1)
+        left_mm = near.x_mm - self.array.span_mm / 2
+        u_mm, felt = Wave.best(left_mm, swing, self.array.column_pitch_mm)
+        strength = felt.max(axis=1)
         at = np.flatnonzero(strength > LEAST_SWING * strength.max())
         if not at.size:
             return np.empty((0, 2))
-        # An edge is halfway between the last place without a swing and the first with one.
-        u_mm = np.pad(wave.u_mm, 1, mode="edge")
-        starts_mm = (u_mm[at] + u_mm[at + 1]) / 2
-        ends_mm = (u_mm[at + 1] + u_mm[at + 2]) / 2
-        gaps_mm = starts_mm[1:] - ends_mm[:-1]
+        gaps_mm = np.diff(u_mm[at]) * (np.diff(at) > 1)
         apart = np.flatnonzero(gaps_mm > APART * self.geometry.dot_width_mm)
         firsts, lasts = np.r_[0, apart + 1], np.r_[apart, at.size - 1]
-        return np.column_stack((starts_mm[firsts], ends_mm[lasts]))
+        return np.column_stack((u_mm[at[firsts]], u_mm[at[lasts]]))
 
     def _near(self, exploration: FeltFrames, right_mm: float) -> FeltFrames:
         """Ticks at which the array is over a line, or at most a dot's width beside it."""
-        beside_mm = self._half_mm + self.geometry.dot_width_mm
+        beside_mm = self.array.span_mm / 2 + self.geometry.dot_width_mm
         return exploration.within(-beside_mm, right_mm + beside_mm)
 
-    def _felt(self, exploration: FeltFrames, weights: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Strains of pairs or swings of columns; float32[n, pairs or columns, channels]."""
-        frames = exploration.frames.reshape(len(exploration.frames), -1)
-        felt = np.asarray(frames, np.float32) @ weights.reshape(len(frames[0]), -1)
-        return felt.reshape(len(frames), *weights.shape[1:])
-
-
-def _per_frame(rows: NDArray[np.float64], columns: NDArray[np.float64]) -> NDArray[np.float32]:
-    """Weights of all actuators of a frame; float32[rows · columns, pairs or columns, channels]."""
-    weights = np.einsum("rk,cp->rcpk", rows, columns)
-    return weights.reshape(-1, *weights.shape[2:]).astype(np.float32)
+    def _swings(self, exploration: FeltFrames) -> NDArray[np.float32]:
+        """Swings of the columns; float32[n, columns, channels]."""
+        frames = np.asarray(exploration.frames, np.float32)
+        return np.tensordot(frames, self._weights, (1, 0))
