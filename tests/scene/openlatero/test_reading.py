@@ -20,7 +20,6 @@ from vbraille.scene.patterns import (
     PathShape,
     Stroke,
     Tile,
-    Uniform,
     Vibration,
 )
 
@@ -159,11 +158,6 @@ def test_changes_of_tiles_are_as_the_file_says_or_as_they_are_shown(read):
     assert (tile.amplitude, tile.inverted) == (0.5, True)
     (tile,) = read(text, as_shown=True).scene.elements
     assert (tile.amplitude, tile.inverted) == (1.0, False)
-
-
-def test_a_scene_that_is_no_group_is_shown(read):
-    text = scene("").replace('<Pattern type="Group">', '<Pattern type="Texture" subtype="Plain">')
-    assert read(text).scene.elements == (Uniform(),)
 
 
 def test_elements_in_a_group_as_deep_as_can_be(read):

@@ -28,8 +28,6 @@ class Asked(NamedTuple):
         The trial, and how often it was shown.
     felt
         Function that returns what was felt of each stimulus.
-    answer
-        The answer, where it is asked how sure it is.
     item
         What is asked of the questionnaire.
     """
@@ -38,7 +36,6 @@ class Asked(NamedTuple):
     trial: Trial | None = None
     attempt: int = 0
     felt: Callable[[], list[FeltFrames]] = list
-    answer: str = ""
     item: Item | None = None
 
 

@@ -105,6 +105,7 @@ class Simulated(Answers):
         self._habits = parse_habits(habits)
         self._noise = self._habits.noise
         self.name = f"simulated:{habits or 0}"
+        self._answered = ""
         self._study, self._question = protocol, protocol.asks
         self._drawn = f"{protocol.name} {plan.participant} {plan.seed}"
         self._parameter = protocol.design.parameter
@@ -129,7 +130,7 @@ class Simulated(Answers):
         scale = self._question.confidence
         if asked.what == "confidence" and scale is not None:
             # After a crash between an answer and its confidence there is nothing left to think of.
-            is_sure = asked.felt() and self._answer(asked, asked.trial, habits) == asked.answer
+            is_sure = asked.felt() and self._answer(asked, asked.trial, habits) == self._answered
             quarters = 0 if lapsed else 3 if is_sure else 1
             return Line(str(scale.least + round(quarters * (scale.most - scale.least) / 4)))
         if lapsed:
@@ -137,7 +138,8 @@ class Simulated(Answers):
             return Line(guesses[habits.integers(len(guesses))])
         if alarmed:
             return Line(self._question.alarm)
-        return Line(self._answer(asked, asked.trial, random_of(drawn)))
+        self._answered = self._answer(asked, asked.trial, random_of(drawn))
+        return Line(self._answered)
 
     def _learn(self, plan: Plan) -> None:
         """Learn what a reader is told before the session."""
