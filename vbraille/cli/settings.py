@@ -188,7 +188,7 @@ def given(ctx: click.Context) -> set[str]:
 
 
 def is_default(ctx: click.Context, name: str) -> bool:
-    """Whether an option is given nowhere."""
+    """Tell whether nothing gives an option a value."""
     return ctx.get_parameter_source(name) is ParameterSource.DEFAULT
 
 
