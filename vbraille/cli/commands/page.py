@@ -157,13 +157,11 @@ def _checked(contents: Iterable[bytes]) -> Iterator[bytes]:
 
 def _head(book: Book, cells: int, lines: int) -> dict[str, str]:
     """Facts that a file says of itself which is written from a book."""
-    from vbraille.layout.writing import identifier
-
     source, table = book.source, book.table
     info = None if table is None else table.info
-    made_with = (None if table is None else table.name, "pef", cells, lines)
+    made_by = "braille" if table is None else table.name
     return {
-        "identifier": identifier(source.sha256(), *made_with),
+        "identifier": f"{source.sha256()} {made_by} {cells}x{lines}",  # no other book's
         "title": source.title or Path(source.name).stem,
         "language": source.language or (info.language if info else ""),
     }
