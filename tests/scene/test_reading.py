@@ -3,9 +3,6 @@
 import contextlib
 import os
 import re
-import subprocess
-import sys
-import time
 
 import pytest
 from hypothesis import given
@@ -70,10 +67,6 @@ REFUSED = {
         element("image", 'file = "http://a.org/b.png"', "width_mm = 5"),
         "line 6: file is 'http://a.org/b.png'; give the name of a file, since n",
     ),
-    "an image without a name": (
-        element("image-dots", 'file = ""', "width_mm = 5"),
-        "line 6: file is empty; give the name of a file",
-    ),
     "spokes that fade over no length": (
         element("axial-grating", "center_mm = [1, 1]", "ridge_deg = 9", "fade_mm = [0, 5e-324]"),
         "line 8: fade is from a smaller to a larger length, from 0 to 100 mm",
@@ -104,14 +97,6 @@ REFUSED = {
         f"{CANVAS}{CIRCLE}stroke.width_mm = nan\n",
         "line 8: width_mm: is nan; it must be a number",
     ),
-    "a ridge of 0": (
-        element("linear-grating", "ridge_mm = 0"),
-        "line 6: ridge is 0 mm; it must be 0.05 to 10000 mm",
-    ),
-    "a polygon of two vertices": (
-        element("polygon", "vertices_mm = [[0, 0], [9, 9]]", "stroke = {}"),
-        "line 6: vertices are 2; there must be 3 or more",
-    ),
     "a polygon that crosses itself": (
         element("polygon", "vertices_mm = [[0, 0], [9, 9], [9, 0], [0, 9]]", "stroke = {}"),
         "line 6: vertices make edges that cross or touch, those after number 1",
@@ -124,17 +109,9 @@ REFUSED = {
         CANVAS + CIRCLE,
         "line 4: elements 1: a shape needs a stroke, dots or a fill; add one",
     ),
-    "a frequency out of range": (
-        element("vibration", "frequency_hz = 60"),
-        "line 6: frequency is 60 Hz; it must be 0.1 to 50 Hz",
-    ),
     "a place of three numbers": (
         element("circle", "center_mm = [1, 2, 3]", "radius_mm = 3", "stroke = {}"),
         "line 6: center_mm: must be a list in brackets of length 2, not 3",
-    ),
-    "a table in place of a list": (
-        f'{CANVAS}[elements]\nkind = "circle"\n',
-        "line 4: elements: must be a list in brackets, not a table",
     ),
     "a texture that is none": (
         f"{CANVAS}[textures]\na = 3\n",
@@ -213,15 +190,6 @@ def test_a_pipe_is_refused_and_not_waited_for(tmp_path):
     assert refusal(path) == f"{path} is no ordinary file; give one that is"
 
 
-def test_a_file_of_a_gigabyte_is_refused_at_once(tmp_path):
-    path = tmp_path / "a.scene"
-    with path.open("wb") as file:
-        file.truncate(2**30)
-    began = time.process_time()
-    assert "too large" in refusal(path)
-    assert time.process_time() - began < 1
-
-
 def test_a_scene_without_elements_is_one(tmp_path):
     assert open_scene(write(tmp_path, CANVAS)).resolved.elements == ()
 
@@ -255,23 +223,6 @@ def test_a_changed_file_is_read_or_refused_in_a_sentence(tmp_path_factory, chang
     path = write(tmp_path_factory.getbasetemp(), "".join(tokens), "changed.scene")
     with contextlib.suppress(InputError):
         open_scene(path)
-
-
-def test_numbers_are_the_same_in_a_locale_with_a_decimal_comma(tmp_path):
-    path = write(tmp_path, f"{CANVAS}{CIRCLE}stroke = {{width_mm = 2.5}}\n")
-    program = (
-        "import locale\n"
-        "for name in ('de_DE.UTF-8', 'fr_CA.UTF-8', ''):\n"
-        "    try: locale.setlocale(locale.LC_ALL, name); break\n"
-        "    except locale.Error: pass\n"
-        "from vbraille.scene.reading import open_scene\n"
-        f"print(open_scene({str(path)!r}).resolved.elements[0].stroke.width_mm)\n"
-    )
-    environment = {**os.environ, "LC_ALL": "de_DE.UTF-8"}
-    done = subprocess.run(
-        [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True
-    )
-    assert done.stdout == "2.5\n"
 
 
 ANSWERS = {

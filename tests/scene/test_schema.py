@@ -19,7 +19,6 @@ FORM = (
     "no kind",
     "a misspelt key",
     "a place of three numbers",
-    "a table in place of a list",
     "a texture that is none",
 )
 

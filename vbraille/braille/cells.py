@@ -96,10 +96,8 @@ class Cells:
         start, stop, step = part.indices(self.masks.size)
         if step != 1:
             raise ValueError("cells are cut in runs: the step of a slice must be 1")
-        if start < stop:  # the last cell's character is part of the run, even if it goes on after
-            end = self.source(stop - 1)[1]
-        else:
-            end = int(self.starts[stop]) if stop < self.masks.size else self.end
+        # The last cell's character is part of the run, even if it goes on after.
+        end = self.source(stop - 1)[1] if start < stop else self.end
         return Cells(self.masks[start:stop], self.starts[start:stop], end)
 
     def source(self, cell: int) -> tuple[int, int]:

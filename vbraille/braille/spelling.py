@@ -99,7 +99,7 @@ def spell_string(text: str, keys: dict[str, int]) -> tuple[int, ...]:
                 f"nothing; write each cell as a letter, a key of [keys] or Unicode braille (U+2800 "
                 f"for a blank one)"
             )
-    return tuple(_by_character(character, text, keys) for character in text)
+    return spell(text, keys)
 
 
 def parse_answer(text: str, *, places: int, keys: dict[str, int], shown_dots: int) -> str:

@@ -129,10 +129,11 @@ class Line:
     def word(self, cell: int) -> str:
         """The whole word that a cell is part of, on this line or not; empty at a blank."""
         span = self.source(cell)
-        at = -1 if span is None else span[0] - self.block.start
-        text = self.block.text.replace(chr(UNICODE_BLANK), " ")
-        words = (found for found in re.finditer(r"\S+", text) if found.end() > at >= found.start())
-        return next((found[0] for found in words), "")
+        if span is None:
+            return ""
+        at, text = span[0] - self.block.start, self.block.text.replace(chr(UNICODE_BLANK), " ")
+        words = re.finditer(r"\S+", text)
+        return next((word[0] for word in words if word.start() <= at < word.end()), "")
 
 
 def wrap(
@@ -186,8 +187,7 @@ def wrap(
             stop = bisect_left(places, places[cut], start, cut)  # where a character begins
             stop = stop if stop > start else cut
             if table is not None and stop < full and places[stop - 1] != places[stop]:
-                rest = cells.masks[stop:end].tobytes().split(b"\0", 1)[0]
-                after, begin = table.divide(text, places[stop], rest)
+                after, begin = table.divide(text, places[stop])
             following = end - len(solid[stop:end].lstrip(b"\0"))
         own = cells[start:stop]
         to = len(text) if following >= end else own.end - block.start

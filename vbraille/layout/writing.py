@@ -5,9 +5,7 @@ A page is its rows from the top, and a row the dot masks of its cells from the l
 
 from __future__ import annotations
 
-import hashlib
 import re
-import uuid
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import escape
 
@@ -66,12 +64,6 @@ def brf(pages: Iterable[Iterable[bytes]], end: bytes = FORM_FEED) -> Iterator[by
         for row in rows:
             yield Cells.bare(np.frombuffer(row.rstrip(_BLANK), np.uint8)).to_brf().encode() + b"\n"
         yield end
-
-
-def identifier(sha256: str, *made_with: object) -> str:
-    """Name that a written book has, and no other: of its file, and what decides on its cells."""
-    whole = hashlib.sha256(repr((sha256, *made_with)).encode()).digest()
-    return f"urn:uuid:{uuid.UUID(bytes=whole[:16], version=4)}"
 
 
 def pef(

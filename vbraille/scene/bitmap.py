@@ -75,7 +75,8 @@ def opaque(bitmap: Bitmap) -> Bitmap:
     reached = np.pad(bitmap.intensities > 0, edge, constant_values=bitmap.outside > 0)
     mask = np.where(reached, WHOLE, 0).astype(np.uint16)
     for step in range(1, edge):
-        reached = _with_neighbours(reached)
+        for axis in (0, 1):  # the edge all around is wider than this goes
+            reached = reached | np.roll(reached, 1, axis) | np.roll(reached, -1, axis)
         value = round(WHOLE * (1 - step / edge))
         np.maximum(mask, np.where(reached, value, 0).astype(np.uint16), out=mask)
     width, height = pixel_mm
@@ -134,14 +135,3 @@ def bitmap_box(bitmap: Bitmap) -> Box | None:
         left + (float(columns.max()) + 1.5) * width,
         top + (float(rows.max()) + 1.5) * height,
     )
-
-
-def _with_neighbours(reached: np.ndarray) -> np.ndarray:
-    """Add to the pixels that are set the eight around each of them."""
-    rows = reached.copy()
-    rows[1:] |= reached[:-1]
-    rows[:-1] |= reached[1:]
-    both = rows.copy()
-    both[:, 1:] |= rows[:, :-1]
-    both[:, :-1] |= rows[:, 1:]
-    return both

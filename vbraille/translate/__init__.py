@@ -3,8 +3,8 @@
 from vbraille.braille.cells import Cells
 from vbraille.translate.blocks import Block, BlockKind, Mark, MarkKind
 from vbraille.translate.book import Book, remarks
-from vbraille.translate.formats import FORMATS, open_source, text_source
-from vbraille.translate.source import Heading, Source
+from vbraille.translate.formats import open_source, text_source
+from vbraille.translate.source import Source
 from vbraille.translate.spellings import Undefined
 from vbraille.translate.tables import (
     BrailleTable,
@@ -19,13 +19,11 @@ from vbraille.translate.tables import (
 )
 
 __all__ = [
-    "FORMATS",
     "Block",
     "BlockKind",
     "Book",
     "BrailleTable",
     "Cells",
-    "Heading",
     "Mark",
     "MarkKind",
     "Source",

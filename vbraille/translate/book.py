@@ -13,7 +13,7 @@ from vbraille.braille.cells import Cells
 from vbraille.errors import InputError
 from vbraille.translate.blocks import MarkKind, cut_marks
 from vbraille.translate.spellings import Kind, Undefined
-from vbraille.translate.tables import BrailleTable, find_table, six_dot_table
+from vbraille.translate.tables import BrailleTable, find_table
 from vbraille.translate.undefined import Written
 from vbraille.wording import count, setting
 
@@ -86,65 +86,37 @@ class Book:
         for mark in block.marks:  # inner ones come after those around them
             if mark.kind is MarkKind.LANGUAGE:
                 tags[mark.start : mark.end] = [mark.target] * (mark.end - mark.start)
-        assert self.table is not None
+        own = self.table
+        assert own is not None
         written, start = Written(), 0
         for table, run in groupby(tags, self._table_for):
             tag, *more = run
             stop = start + 1 + len(more)
             part = table.write(block.text[start:stop], cut_marks(block.marks, start, stop))
-            if table is not self.table:
-                part = self._between_signs(part, tag, block.text[stop : stop + 1])
+            if table is not own:
+                part = _between_signs(own, part, tag, block.text[stop : stop + 1])
             written.add(part, start)
             start = stop
         if written.otherwise:
             self.otherwise[block.number] = written.otherwise
-            self._note_script(block, self.table)
+            self._note_script(block, own)
         return written.cells(len(block.text), block.start)
 
     def _find_table(self, language: str) -> BrailleTable:
         """Table of a passage's language; the book's own if that is its language, or it has none."""
         own = self.table
         assert own is not None
-        if not language or not self.switch:
+        tags = [tag for tag in (self.language, self.source.language) if tag]
+        tags = tags or [own.info.language or own.name.partition("-")[0]]
+        usual = _table_of(language)
+        ours = [table.name for table in (own, *map(_table_of, tags)) if table]
+        if usual is None or not self.switch or usual.name in ours:
             return own
-        known = [tag for tag in (self.language, self.source.language) if tag]
-        known = known or [own.info.language or own.name.partition("-")[0]]
-        try:
-            usual = find_table(language)
-            if usual in (own.name, *map(_named, known)):
-                return own
-            name = _named(language, self.grade) or usual
-            if BrailleTable(name).eight_dots and not own.eight_dots:
-                name = six_dot_table(language) or own.name
-            return own if name == own.name else BrailleTable(name, own.undefined)
-        except InputError:
-            return own
-
-    def _between_signs(self, part: Written, tag: str, following: str) -> Written:
-        """A passage in another language between the signs that say so."""
-        own = self.table
-        assert own is not None
-        words = [found.span() for found in re.finditer(rb"[^\0]+", part.masks)]
-        if not words:
-            return part
-        first, end = words[0][0], words[-1][1]
-        language = re.split("[-_]", tag.strip().lower())[0]
-        if not own.is_ueb:
-            opening, closing = next(filter(own.cells_of, ("[]", "()")), "⠿⠿")
-            before, after = own.write(f"{opening}{language}:"), own.write(closing)
-            signs = [(first, before.masks), (end, after.masks)]
-        elif len(words) > _UEB_WORDS:
-            letters = Cells.from_brf(language).masks.tobytes()
-            signs = [(first, _UEB_OPENING + letters + _UEB_OPENED), (end, _UEB_CLOSING)]
-        else:
-            signs = [(start, _UEB_WORD) for start, _ in words]
-            if following.strip() and part.masks[-1]:
-                signs.append((end, _UEB_WORD_END))
-        for cell, sign in reversed(signs):
-            part.masks = part.masks[:cell] + sign + part.masks[cell:]
-            place = part.places[min(cell, len(part.places) - 1)]
-            part.places[cell:cell] = [place] * len(sign)
-        return part
+        found = _table_of(language, self.grade) or usual
+        if found.eight_dots and not own.eight_dots:
+            found = own if usual.eight_dots else usual
+        found.undefined = own.undefined
+        return found
 
     def _note_script(self, block: Block, table: BrailleTable) -> None:
         """Note that most of a block is in a script that its table does not know."""
@@ -156,6 +128,31 @@ class Book:
                 f"most of this passage is in {script} letters, which the table {table.name} "
                 f"does not know; give its {setting('language')}"
             )
+
+
+def _between_signs(own: BrailleTable, part: Written, tag: str, following: str) -> Written:
+    """A passage in another language between the signs of a book's own table that say so."""
+    words = [found.span() for found in re.finditer(rb"[^\0]+", part.masks)]
+    if not words:
+        return part
+    first, end = words[0][0], words[-1][1]
+    language = re.split("[-_]", tag.strip().lower())[0]
+    if not own.is_ueb:
+        opening, closing = next(filter(own.cells_of, ("[]", "()")), "⠿⠿")
+        before, after = own.write(f"{opening}{language}:"), own.write(closing)
+        signs = [(first, before.masks), (end, after.masks)]
+    elif len(words) > _UEB_WORDS:
+        letters = Cells.from_brf(language).masks.tobytes()
+        signs = [(first, _UEB_OPENING + letters + _UEB_OPENED), (end, _UEB_CLOSING)]
+    else:
+        signs = [(start, _UEB_WORD) for start, _ in words]
+        if following.strip() and part.masks[-1]:
+            signs.append((end, _UEB_WORD_END))
+    for cell, sign in reversed(signs):
+        part.masks = part.masks[:cell] + sign + part.masks[cell:]
+        place = part.places[min(cell, len(part.places) - 1)]
+        part.places[cell:cell] = [place] * len(sign)
+    return part
 
 
 _WAYS = {
@@ -213,9 +210,8 @@ def _characters(found: Counter[str]) -> str:
     return f"{count(found.total(), 'character')} ({', '.join(named)})"
 
 
-def _named(language: str, grade: int | None = None) -> str:
-    """Name of the table of a language and grade; empty if there is none."""
+def _table_of(language: str, grade: int | None = None) -> BrailleTable | None:
     try:
-        return find_table(language, grade)
+        return BrailleTable(find_table(language, grade))
     except InputError:
-        return ""
+        return None

@@ -35,7 +35,6 @@ _READERS = {
     "unicode-braille": "braillefiles:read_brf encoding",
     "pef": "braillefiles:read_pef",
 }
-FORMATS = tuple(_READERS)
 _KEEP_LINES = ("brf", "unicode-braille", "pef")  # whatever is asked for
 _SHOWN_BY = tomllib.loads(Path(__file__).with_name("formats.toml").read_text("utf-8"))
 _OLE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
@@ -83,8 +82,8 @@ def open_source(
     stream = _stream(file, name)
     try:
         found = find_format(stream, name) if form is None else form.lower()
-        if found not in FORMATS:
-            raise InputError(f"unknown file format {form!r}{nearest(found, FORMATS)}")
+        if found not in _READERS:
+            raise InputError(f"unknown file format {form!r}{nearest(found, _READERS)}")
         reader, *takes = _READERS[found].split()
         given = {"encoding": encoding, "brf_table": brf_table, "keep_lines": keep_lines or None}
         options: dict[str, Any] = {}
@@ -196,7 +195,7 @@ def _shown(by: str, name: str, *texts: str) -> str:
     """
     for pattern, told in _SHOWN_BY[by].items():
         if any(re.match(pattern, text, re.S) for text in texts):
-            if told in FORMATS:
+            if told in _READERS:
                 return told
             raise InputError(f"{name} is {told}")
     return ""

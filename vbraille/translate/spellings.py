@@ -109,7 +109,7 @@ def joins(part: str, sign: str) -> bool:
     return len(part) == 1 and _letter(part, _FLAGS) != "" and _letter(sign, _FLAGS) != ""
 
 
-def in_order(part: str) -> str:
+def _in_order(part: str) -> str:
     """The part as tables expect it: shadda before the vowel, Hebrew letters composed."""
     if part in _LEFT_OUT:
         return ""
@@ -134,7 +134,12 @@ def spellings(part: str, table: str, how: Undefined) -> list[tuple[Kind | None, 
     code, named = f"U+{ord(part[0]):04X}", name(part[0], "").lower()
     # A picture or a symbol that has a name people know.
     is_emoji = named != "" and category(part[0]) in ("So", "Sk") and part[0] >= "\u2300"
-    as_it_is = [part, *([" ", "⠀"] if part.isspace() else []), *[""][: _is_invisible(part)]]
+    as_it_is = [
+        _in_order(part),
+        part,
+        *([" ", "⠀"] if part.isspace() else []),
+        *[""][: _is_invisible(part)],
+    ]
     dots, plain = _small_forms(part, table)
     said = {Undefined.CODE: code, Undefined.NAME: named or code}.get(how, named * is_emoji)
     instead = [""] if how is Undefined.DROP else _bracketed(said) if said else []

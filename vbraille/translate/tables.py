@@ -32,6 +32,7 @@ _DATA = tomllib.loads(Path(__file__).with_name("languages.toml").read_text("utf-
 _DATED = re.compile(r"_\d{4}\b|-\d{4}[-.]|-detailed\b")
 
 
+_UNCONTRACTED = ("", "0", "1")  # grades
 _SIX_DOTS = 0x3F
 _LONGEST_NAME = 1_000  # liblouis puts a name into 2 kB without checking that it fits
 # Bits that liblouis has for the emphasis of a character.
@@ -95,10 +96,6 @@ def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
         If there are no tables; the message names the nearest languages.
     """
     tag = wanted = language.strip().lower().replace("_", "-")
-    if not wanted:
-        raise InputError(
-            f"the language is empty; give a tag such as fr, or leave {setting('language')} out"
-        )
     while tag:
         tag = _DATA["same"].get(tag, tag)
         found = tuple(
@@ -140,19 +137,17 @@ def find_table(language: str = "en", grade: int | None = None) -> str:
         If there is no such table; the message says which grades there are.
     """
     tag, tables = tables_of(language)
-    named = _DATA["usual"].get(tag, {})
-    wanted = "usual" if grade is None else str(grade)
-    plain = [table for table in tables if not _is_contracted(table)]
-    fitting = [table for table in tables if table.grade == wanted and table.kind != "computer"]
-    if grade is None:
-        fitting = list(tables)
-    elif not fitting and grade < 2:
-        wanted, fitting = "1", plain
+    named, wanted, fitting = _DATA["usual"].get(tag, {}), "usual", list(tables)
+    if grade is not None:
+        wanted = str(grade)
+        fitting = [table for table in tables if table.grade == wanted and table.kind != "computer"]
+        if not fitting and grade < 2:
+            wanted, fitting = "1", [table for table in tables if table.grade in _UNCONTRACTED]
     if wanted in named:
         return named[wanted]
     if fitting:
         return min(fitting, key=_preference).name
-    there = {*named, *(table.grade for table in tables), *["1"][: len(plain)]}
+    there = {*named, *(table.grade or "1" for table in tables)}
     raise InputError(
         f"there is no grade {grade} for language {language!r}; there is "
         f"{', '.join(sorted(filter(str.isdecimal, there)))} "
@@ -160,14 +155,10 @@ def find_table(language: str = "en", grade: int | None = None) -> str:
     )
 
 
-def _is_contracted(table: TableInfo) -> bool:
-    return table.grade not in ("", "0", "1")
-
-
 def _preference(table: TableInfo) -> tuple[bool, bool, bool, bool, int, str]:
     """Key by which the most usual of a language's tables sorts first."""
     dated = _DATED.search(table.name) is not None
-    computer, contracted = table.kind == "computer", _is_contracted(table)
+    computer, contracted = table.kind == "computer", table.grade not in _UNCONTRACTED
     return computer, table.dots == 8, dated, contracted, len(table.language), table.name
 
 
@@ -227,7 +218,7 @@ class BrailleTable:
         """Dot masks of a short text; none if the table leaves some of it undefined."""
         return cells_of(self.name, text)
 
-    def divide(self, text: str, place: int, rest: bytes) -> tuple[bytes, bytes]:
+    def divide(self, text: str, place: int) -> tuple[bytes, bytes]:
         """Cells that end a line within a word or a number, and those that begin the next line.
 
         Parameters
@@ -236,26 +227,24 @@ class BrailleTable:
             Text of the block.
         place
             Index of the character at which the next line begins.
-        rest
-            Cells of the word from there on.
         """
         before, after = text[place - 1], text[place]
+        numbers = before.isdecimal() and after.isdecimal()
+        if numbers and self.is_ueb:
+            return _UEB_CONTINUATION, b""
         following = "".join(text[place:].split(None, 1)[:1])
         word = "".join(text[:place].split()[-1:]) + following
-        numbers = before.isdecimal() and after.isdecimal()
-        ending = self.cells_of("-")[-1:] or _HYPHEN
+        ending, sign = self.cells_of("-")[-1:] or _HYPHEN, b""
         if before in _PARTING or after in _PARTING:
             ending = b""  # a line may end at these
-        elif self.is_ueb and (numbers or not word.strip(_PUNCTUATION).isalpha()):
+        elif self.is_ueb and not word.strip(_PUNCTUATION).isalpha():
             ending = _UEB_CONTINUATION
-        sign = whole = b""
-        if numbers and ending != _UEB_CONTINUATION:
-            whole = self.cells_of(following)
-            sign = whole.removesuffix(rest)
+        if numbers:
+            sign = self.cells_of(after)[:-1]
         elif before.isupper() and after.isupper():
-            whole = self.cells_of(following)
-            sign = whole.removesuffix(self.cells_of(following.lower()))
-        return ending, sign if len(sign) < len(whole) else b""
+            whole, small = map(self.cells_of, (following, following.lower()))
+            sign = whole.removesuffix(small) if small and whole.endswith(small) else b""
+        return ending, sign
 
     @cached_property
     def info(self) -> TableInfo:

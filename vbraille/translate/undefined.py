@@ -15,7 +15,7 @@ import numpy as np
 
 from vbraille.braille.cells import Cells
 from vbraille.translate.liblouis import LOUIS, Answer, UnendingError, cells_of
-from vbraille.translate.spellings import FULL_CELLS, Kind, Undefined, in_order, joins, spellings
+from vbraille.translate.spellings import FULL_CELLS, Kind, Undefined, joins, spellings
 
 _STRANGER = "\ue123"  # no table has it
 _MOST_LOST = 3  # unending words of a passage that are tried, before the rest is given up
@@ -86,33 +86,33 @@ def write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Wri
     return whole
 
 
-@dataclass(slots=True, eq=False)
-class _Part:
-    """A letter with its marks, spelt as it stands until it takes another spelling."""
-
-    start: int
-    original: str
-    spelt: str = ""
-    kind: Kind | None = None
-    tried: int = 0
-
-
 def _write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Written:
     if not _NEEDS_ORDER.search(text):  # most texts of most books need no more, three times as fast
         answer = LOUIS.translate(table, text, forms)
         if not answer.undefined and not _swallowed(table, text, answer):
             return Written(answer.masks, answer.places)
-    parts: list[_Part] = []
-    for place, sign in enumerate(text):
-        if parts and joins(parts[-1].original, sign):
-            parts[-1].original += sign
+    parts: list[str] = []
+    for sign in text:
+        if parts and joins(parts[-1], sign):
+            parts[-1] += sign
         else:
-            parts.append(_Part(place, sign))
-    for part in parts:
-        part.spelt = in_order(part.original)
-    owners = [part for part in parts for _ in part.original]
+            parts.append(sign)
+    owners = [number for number, part in enumerate(parts) for _ in part]
+    tried = [0] * len(parts)  # spellings of each part
     while True:
-        spelt, origins = _spelt(parts)
+        spelt, marked, start = "", "", 0
+        origins: list[int] = []  # character of the text that each of the spelt stands for
+        otherwise: Counter[tuple[Kind, str]] = Counter()
+        for part, number in zip(parts, tried, strict=True):
+            ways = spellings(part, table, how)
+            kind, way = ways[min(number, len(ways) - 1)]
+            if kind is not None:
+                otherwise[kind, part] += 1
+            if kind is not Kind.MARKED or way != marked:  # neighbours have one marker together
+                spelt += way
+                origins += [start + (way == part) * place for place in range(len(way))]
+            marked = way if kind is Kind.MARKED else ""
+            start += len(part)
         shapes = None if forms is None else [forms[place] for place in origins]
         answer = LOUIS.translate(table, spelt, shapes)
         dots = bytearray(answer.masks)
@@ -123,33 +123,12 @@ def _write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Wr
                 dots[cell] = ord(spelt[place]) & 0xFF
             else:
                 left.append(origins[place])
-        places = [origins[min(place, len(origins) - 1)] for place in answer.places]
         left = left or [origins[place] for place in _swallowed(table, spelt, answer)]
         if not left:
-            otherwise = Counter((part.kind, part.original) for part in parts if part.kind)
+            places = [origins[min(place, len(origins) - 1)] for place in answer.places]
             return Written(bytes(dots), places, otherwise)
-        for part in {owners[place] for place in left}:
-            ways = spellings(part.original, table, how)
-            part.kind, part.spelt = ways[min(part.tried, len(ways) - 1)]
-            part.tried += 1
-
-
-def _spelt(parts: list[_Part]) -> tuple[str, list[int]]:
-    """The text as spelt now, and the character of the text that each of it stands for.
-
-    Neighbours that have a marker each have one together.
-    """
-    text, marked = "", ""
-    origins: list[int] = []
-    for part in parts:
-        is_marked = part.kind is Kind.MARKED
-        if is_marked and part.spelt == marked:
-            continue
-        marked = part.spelt if is_marked else ""
-        text += part.spelt
-        exact = part.spelt == part.original
-        origins += [part.start + exact * number for number in range(len(part.spelt))]
-    return text, origins
+        for number in {owners[place] for place in left}:
+            tried[number] += 1
 
 
 def _swallowed(table: str, text: str, answer: Answer) -> list[int]:

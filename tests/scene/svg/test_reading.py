@@ -208,11 +208,6 @@ def test_what_is_not_seen_is_not_felt(read, text):
     assert found.warnings == ()
 
 
-def test_what_is_shown_in_something_hidden(read):
-    found = read('<g visibility="hidden"><circle r="5" visibility="visible"/></g>')
-    assert isinstance(element_of(found), Circle)
-
-
 def test_a_fill_that_is_not_closed_has_a_stroke_that_is_not(read):
     fill, stroke = read('<path d="M0 0H9V9" stroke="red" stroke-width="2"/>').scene.elements
     assert (fill.closed, fill.stroke, stroke.closed, stroke.fill) == (True, None, False, None)

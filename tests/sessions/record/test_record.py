@@ -60,7 +60,7 @@ def test_an_answer_and_its_ticks_are_one_transaction(tmp_path):
     record.append("answer", 1.0, trial, 1, answer="⠁⠉")
     copy = shutil.copy(sat.session.path, tmp_path / "copy.session")
     with reading(copy) as db:
-        np.testing.assert_array_equal(read_ticks(db, 1, 1), ticks)
+        np.testing.assert_array_equal(read_ticks(db, 1), ticks)
     record.close()
     assert check(sat.session.path) == []
 

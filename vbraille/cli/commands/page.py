@@ -23,11 +23,9 @@ _CELLS, _LINES = 40, 25  # of a page of paper, where nothing else is asked for
 _SHOWN = ("model", "travel", "geometry")  # what lays a book in braille out anew
 
 
-@click.command(
-    cls=options.Command, epilog="Example: vbraille page book.txt --format brf --out book.brf"
-)
-@options.file
-@options.takes(
+@options.command(
+    "page book.txt --format brf --out book.brf",
+    options.file,
     options.option("--format", type=click.Choice(["unicode", "brf", "pef", "dots", "text"]),
                    default="unicode", show_default=True, help="Form of the lines."),
     options.out, options.force,
@@ -157,13 +155,11 @@ def _checked(contents: Iterable[bytes]) -> Iterator[bytes]:
 
 def _head(book: Book, cells: int, lines: int) -> dict[str, str]:
     """Facts that a file says of itself which is written from a book."""
-    from vbraille.layout.writing import identifier
-
     source, table = book.source, book.table
     info = None if table is None else table.info
-    made_with = (None if table is None else table.name, "pef", cells, lines)
+    made_by = "braille" if table is None else table.name
     return {
-        "identifier": identifier(source.sha256(), *made_with),
+        "identifier": f"{source.sha256()} {made_by} {cells}x{lines}",  # no other book's
         "title": source.title or Path(source.name).stem,
         "language": source.language or (info.language if info else ""),
     }

@@ -10,7 +10,6 @@ the middle never came is read "in part"; another one with a re-scan is "re-scan"
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -98,24 +97,24 @@ def describe(
     first_mm, last_mm
         Left edge of the first dot that is shown, and right edge of the last.
     """
+    turns = np.array(turning_points(x_mm), int)
+    starts_mm, ends_mm = x_mm[turns[:-1]], x_mm[turns[1:]]
+    way_mm, seconds = ends_mm - starts_mm, np.diff(time_ns[turns]) / 1e9
 
-    def share(one: float, other: float) -> float:
-        over_mm = min(max(one, other), last_mm) - max(min(one, other), first_mm)
+    def shares(low_mm: Any, high_mm: Any) -> Any:
+        over_mm = np.minimum(high_mm, last_mm) - np.maximum(low_mm, first_mm)
         return over_mm / (last_mm - first_mm)
 
-    turns = np.array(turning_points(x_mm), int)
-    ways_mm, seconds = np.diff(x_mm[turns]), np.diff(time_ns[turns]) / 1e9
-    ends = pairwise(x_mm[turns].tolist())
-    shares = [share(start, end) for start, end in ends if end > start]
-    passes = sum(part >= PASS_SHARE for part in shares)
-    rescans = sum(RESCAN_SHARE <= part < PASS_SHARE for part in shares)
+    strokes = shares(starts_mm, ends_mm)[way_mm > 0]
+    passes = int((strokes >= PASS_SHARE).sum())
+    rescans = int((strokes >= RESCAN_SHARE).sum()) - passes
     pattern = PASSES.get(passes, "more passes")
-    if share(x_mm.min(), x_mm.max()) < PASS_SHARE:
+    if shares(x_mm.min(), x_mm.max()) < PASS_SHARE:
         pattern = "in part"
     elif rescans or not passes:  # many small steps may go over it with neither
         pattern = "re-scan"
     told: dict[str, Any] = {"pattern": pattern, "passes": passes, "rescans": rescans}
-    for way, own in (("right", ways_mm > 0), ("left", ways_mm < 0)):
-        speed = abs(ways_mm[own].sum()) / seconds[own].sum() if own.any() else None
+    for way, own in (("right", way_mm > 0), ("left", way_mm < 0)):
+        speed = abs(way_mm[own].sum()) / seconds[own].sum() if own.any() else None
         told[f"speed_{way}_mm_s"] = "" if speed is None else round(float(speed), 3)
     return told

@@ -25,7 +25,7 @@ DECIDING = (*OVER, "undo")
 
 @dataclass
 class Tried:
-    """What happened in a trial so far.
+    """Events of a trial, and what they come to.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Tried:
 
     @property
     def attempts(self) -> int:
-        """How often it was shown."""
+        """Number of times that it was shown."""
         return max((event.attempt or 0 for event in self.events), default=0)
 
     def of(self, *kinds: str) -> list[Event]:
@@ -63,7 +63,7 @@ class Tried:
 
     @property
     def paused_s(self) -> float:
-        """How long the newest attempt was paused."""
+        """Time for which the newest attempt was paused."""
         paused_s, began_s = 0.0, None
         for event in self.of("pause", "go", "answer"):
             if event.kind == "pause":
@@ -254,8 +254,8 @@ class Progress:
                 if trial.condition == condition and answer is not None and not trial.catch:
                     shown = self._as_cued(trial)
                     level = getattr(shown.stimuli[0].look, self.protocol.varied)
-                    given = answer.data["answer"], answer.t_s
-                    found.append(outcome_of(design, asks, shown, level, *given))
+                    given = answer.data["answer"]
+                    found.append(outcome_of(design, asks, shown, level, given))
         seed = f"{self.protocol.name} {self.plan.participant} {self.plan.seed} {condition}"
         return self._outcomes[condition], seed
 

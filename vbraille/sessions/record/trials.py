@@ -233,7 +233,7 @@ class _Table:
             reads = tried.of("read")
             return {"duration_s": round(reads[-1].t_s - cue.t_s, 6)} if reads else {}
         edges, line = edges_mm(protocol, first), cue.data["line"]
-        ticks = read_ticks(db, line, line, ("line", "time_ns", "x_mm"))
+        ticks = read_ticks(db, line)
         found = duration(ticks, edges[0], protocol.wanted.span_mm) if edges else None
         if found is None:
             return {}
@@ -261,7 +261,7 @@ class _Table:
             row["words_per_minute"] = round(60 * words / seconds, 3)
         lines = []
         for number, stimulus in enumerate(trial.stimuli):
-            ticks = read_ticks(db, shown[number], shown[number])
+            ticks = read_ticks(db, shown[number])
             half_mm = protocol.style(stimulus.look).geometry.cell_pitch_mm / 2
             edge_mm = edges_mm(protocol, stimulus)[0]
             lines.append(pauses(ticks, edge_mm, protocol.wanted.span_mm, half_mm))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -16,7 +15,7 @@ from vbraille.simulation.specs import is_simulated
 from vbraille.wording import setting
 
 
-class Conditions(Struct, frozen=True, kw_only=True):
+class Conditions(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Conditions of a run; the record keeps them, and the next run has the same.
 
     Parameters
@@ -56,8 +55,6 @@ class Conditions(Struct, frozen=True, kw_only=True):
         """
         if changes.get("answers", self.answers) != self.answers:
             changes = {"fast": False, **changes}
-        if unknown := set(changes) - set(self.__struct_fields__):
-            raise InputError(f"unknown condition {min(unknown)!r}")
         try:
             return convert(structs.asdict(self) | dict(changes), Conditions)
         except ValidationError as error:
@@ -82,15 +79,13 @@ def open_answers(given: Any, conditions: Conditions, progress: Progress) -> Answ
     elif spec == "program":
         raise InputError(f"the answers came from a program; give {setting('answers')} typed")
     elif kind == "simulated":
-        from vbraille.sessions.running.reader import simulated_answers
+        from vbraille.sessions.running.reader import Simulated
 
-        source = simulated_answers(progress.protocol, progress.plan, habits)
+        source = Simulated(progress.protocol, progress.plan, habits)
     elif Path(spec).exists():
         source = Scripted(Path(spec), progress.script_line)
     else:
-        near = get_close_matches(kind, ("typed", "simulated"), 1)
-        hint = f"did you mean {near[0]}?" if near else "give typed, simulated:NOISE or a file"
-        raise InputError(f"there is no file {spec}; {hint}")
+        raise InputError(f"there is no file {spec}; give typed, simulated:NOISE or a file")
     if conditions.fast and isinstance(source, Typed):
         said = f"{setting('fast')} is for answers that are not typed"
         raise InputError(f"{said}; give {setting('answers')} simulated")

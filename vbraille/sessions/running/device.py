@@ -6,7 +6,7 @@ All that a session calls of engines and devices stands here.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from operator import add
 from typing import Any
@@ -217,10 +217,12 @@ class SessionDevice(Presenter):
             If the device has failed.
         """
         ticks, given = self.engine.poll(), self.engine.take_events()
-        found = [
-            Happening("device", self.now_s, {"what": sentence}, sentence)
-            for sentence in (*events.told(given), *self._say_place(ticks))
-        ]
+        told = events.told(given)
+        placing = placing_of(ticks[-1]) if ticks.size else self._placing
+        if placing is not self._placing:
+            self._placing = placing
+            told = [*told, events.placing_sentence(placing, self.display, press="press Enter")]
+        found = [Happening("device", self.now_s, {"what": said}, said) for said in told]
         if ticks.size and self._under is not None:
             found += self._follow(ticks, self._under)
         for event in given:
@@ -244,13 +246,6 @@ class SessionDevice(Presenter):
                 f"{protocol.name} needs {needed_mm:.1f} mm; choose another {setting('device')}"
             )
 
-    def _say_place(self, ticks: NDArray[np.void]) -> Iterable[str]:
-        """Say what is to be done before the device knows its place."""
-        placing = placing_of(ticks[-1]) if ticks.size else self._placing
-        if placing is not self._placing:
-            self._placing = placing
-            yield events.placing_sentence(placing, self.display, press="press Enter")
-
     def _follow(self, ticks: NDArray[np.void], shown: Shown) -> list[Happening]:
         """Keep what was felt, and return the first touch if it is in these ticks."""
         ticks = ticks[(ticks["flags"] & _PAUSED == 0) & (ticks["line"] >= self._first_line)]
@@ -262,12 +257,9 @@ class SessionDevice(Presenter):
             self._at_end = self._at_end or bool((ticks["x_mm"] >= shown.end_mm).any())
         if self._touched or not shown.edges_mm:
             return []
-        on = np.flatnonzero(ticks["x_mm"] + self._wanted.span_mm / 2 >= shown.edges_mm[0])
+        on = ticks[ticks["x_mm"] + self._wanted.span_mm / 2 >= shown.edges_mm[0]][:1]
         self._touched = bool(on.size)
-        if not on.size:
-            return []
-        first = int(on[0])
-        return [_at("contact", ticks["tick"][first], ticks["time_ns"][first])]
+        return [_at("contact", tick["tick"], tick["time_ns"]) for tick in on]
 
     def _heard(self, event: events.Event) -> list[Happening]:
         """Return what an event of the device or the engine is to the session."""

@@ -28,16 +28,6 @@ from vbraille.sessions.running.device import SessionDevice
 from vbraille.simulation import steering
 from vbraille.wording import setting
 
-# Sentences begin with a word for their kind. Those of these kinds hold no stimulus and no answer.
-SAFE = frozenset(
-    (
-        *("begin", "break", "cue", "device", "display", "ended", "fault", "go", "hand", "last"),
-        *("late", "missed", "pause", "place", "read", "ready", "repeat", "stop", "turned", "undo"),
-        *("upright", "warning"),
-    )
-)
-# The address of the live view has its token in it.
-NEVER = frozenset(("live view", "record", "resume"))
 MOST_SAID = 20
 WAITS_FOR = {
     "answer": "the answer",
@@ -102,10 +92,9 @@ class SessionView:
             view.__exit__(*exception)
 
     def say(self, sentence: str) -> None:
-        """Say a sentence to the experimenter, and to the pages if they may hear it."""
+        """Say a sentence to the experimenter, and to the pages unless they are blind."""
         self._say(sentence)
-        kind = sentence.partition(":")[0]
-        if kind in SAFE or not (self.blind or kind in NEVER):
+        if not (self.blind or sentence.startswith("live view")):  # whose address has a token
             self._said.append(sentence)
             self._count += 1
 

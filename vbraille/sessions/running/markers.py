@@ -6,6 +6,7 @@ byte at once or loses it.
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -110,11 +111,11 @@ def _open_port(where: str) -> Callable[[str, int, float], None]:
     """Return what writes a byte to a serial port, without waiting."""
     import serial
 
-    path, _, baud = where.rpartition(":")
-    if not baud.isdecimal() or not path:
-        path, baud = where, str(BAUD)
+    path, baud = where, BAUD
+    if (found := re.fullmatch(r"(.+):(\d+)", where)) is not None:
+        path, baud = found[1], int(found[2])
     try:
-        port: Any = serial.Serial(path, int(baud), write_timeout=0, exclusive=True)
+        port: Any = serial.Serial(path, baud, write_timeout=0, exclusive=True)
     except (OSError, ValueError) as error:
         raise InputError(f"markers cannot be sent to {path}: {error}") from None
 

@@ -14,15 +14,14 @@ from vbraille.conventional.display import (
     DisplayAway,
     DisplayStands,
 )
-from vbraille.errors import DeviceError, InputError
+from vbraille.errors import DeviceError
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.shown import pins_masks
 from vbraille.sessions.running.presenter import Happening, Presenter
 from vbraille.wording import setting
 
-_COMES_S = 10.0  # by then a display that is there has said so
-_GONE_S = 2.0  # how long one may come that says it is not there
+_COMES_S = 5.0  # by then a display that is there has said so
 _POLL_S = 0.02
 
 
@@ -43,7 +42,7 @@ class Pins(Presenter):
         self._display = ConventionalDisplay(spec)
         stimuli = [s for trial in plan.trials for s in trial.stimuli if s.on == "pins"]
         self._cells = max(len(pins_masks(protocol, each)) for each in (None, *stimuli))
-        self._masks = self._put_cells = b""  # what belongs there, and what stands there now
+        self._masks = self._stands = b""  # what belongs there, and what stands there now
         self._number = 0
         self._taken = True
         self._is_reference = False
@@ -67,21 +66,15 @@ class Pins(Presenter):
         Raises
         ------
         DeviceError
-            If it does not come.
-        InputError
-            If it has too few cells.
+            If it does not come, or has too few cells.
         """
-        waited_s = gone_s = 0.0
-        while self._display.standing is None and waited_s < _COMES_S and gone_s < _GONE_S:
-            self._hear()
+        end_s = time.monotonic() + _COMES_S
+        while self.why and time.monotonic() < end_s:
             time.sleep(_POLL_S)
-            waited_s += _POLL_S
-            gone_s += _POLL_S if self._display.away else 0.0
-        if self._display.standing is None:
-            said = f"the protocol needs a conventional display: {self.why}"
-            raise DeviceError(f"{said} ({setting('also')})")
+            self._hear()
         if self.why:
-            raise InputError(f"{self.why}; give another display with {setting('also')}")
+            hint = f"give another display with {setting('also')}"
+            raise DeviceError(f"the protocol needs a conventional display: {self.why}; {hint}")
 
     def close(self) -> dict[str, Any]:
         """Give the display back."""
@@ -128,9 +121,8 @@ class Pins(Presenter):
     def _put(self, cells: bytes, belongs: bytes | None = None) -> None:
         """Have cells stand on the display, and take down which belong there."""
         if cells or self._masks:
-            self._taken = False
+            self._taken, self._stands = False, cells
             self._number = self._display.show(cells)
-            self._put_cells = cells
         self._masks = cells if belongs is None else belongs
 
     def _hear(self) -> None:
@@ -139,26 +131,24 @@ class Pins(Presenter):
             match message:
                 case DisplayStands():
                     self._lose("the conventional display is another one")
-                    data = {"display": message.title, "columns": message.columns}
+                    data: dict[str, Any] = {"display": message.title, "columns": message.columns}
                     said = f"display: {message.title}, {message.columns} cells"
-                    self._tell("display", self.now_s, data | {"spec": self._spec}, said)
+                    data["spec"] = self._spec
+                    self._happened.append(Happening("display", self.now_s, data, said))
                 case DisplayAway():
                     self._taken = False
                     self._lose(message.why)
                     said = f"display: {message.why}"
-                    self._tell("device", self.now_s, {"what": said}, said)
+                    self._happened.append(Happening("device", self.now_s, {"what": said}, said))
                 case CellsTaken() if message.number == self._number and not self._taken:
                     self._taken = True
-                    if not self._number:  # the blank cells of a display that came late
-                        continue
-                    data = {"cells": to_braille(self._put_cells)}
-                    data |= {"reference": True} if self._is_reference else {}
-                    self._tell("pins", message.at_ns / 1e9, data)
+                    # Number 0 are the blank cells of a display that came late.
+                    reference = {"reference": True} if self._is_reference else {}
+                    data = {"cells": to_braille(self._stands), **reference}
+                    if self._number:
+                        self._happened.append(Happening("pins", message.at_ns / 1e9, data))
 
     def _lose(self, why: str) -> None:
         """Tell of a fault if something stood on a display that is gone."""
         if self._masks:
-            self._tell("fault", self.now_s, {"what": why})
-
-    def _tell(self, kind: str, at_s: float, data: dict[str, Any], said: str = "") -> None:
-        self._happened.append(Happening(kind, at_s, data, said))
+            self._happened.append(Happening("fault", self.now_s, {"what": why}))

@@ -52,19 +52,9 @@ class Again(Exception):
 class Over(Exception):
     """The run is over.
 
-    Parameters
-    ----------
-    kind
-        Kind of the last event: "stop" if the session can be resumed, or "end".
-    why
-        Why it is over.
-    data
-        What else the event says.
+    Its arguments are the kind of the last event, which is "stop" if the session can be resumed, or
+    else "end"; why it is over; and the participant's reason, if there is one.
     """
-
-    def __init__(self, kind: str, why: str, **data: Any) -> None:
-        super().__init__(why)
-        self.kind, self.why, self.data = kind, why, data
 
 
 class Runner:
@@ -163,15 +153,15 @@ class Runner:
         """
         with ExitStack() as stack:
             self._open(stack, monitor, before_rest)
-            over = self._go_through()
+            kind, *why = self._go_through()
             before_rest()
             if closed := self.device.close():
                 self._log("closed", **closed)
             self.is_over, self.asked = True, None
-            self._log(over.kind, why=over.why, **over.data)
-            goes_on = "; session resume goes on" if over.kind == "stop" else ""
-            self.say(f"{over.kind}: {over.why}; {self.progress.done} trials have answers{goes_on}")
-            for sentence in self.progress.found if over.kind == "end" else ():
+            self._log(kind, **dict(zip(("why", "reason"), why, strict=False)))
+            goes_on = "; session resume goes on" if kind == "stop" else ""
+            self.say(f"{kind}: {why[0]}; {self.progress.done} trials have answers{goes_on}")
+            for sentence in self.progress.found if kind == "end" else ():
                 self.say(sentence)
             self._look()
 
@@ -215,18 +205,18 @@ class Runner:
             self.say(f"hand: a slow one comes to few pictures in their time; {hint}")
         self._play = open_sound(conditions.sound, answers, self.say)
 
-    def _go_through(self) -> Over:
-        """Go through all trials, and return why the run is over; the array rests then."""
+    def _go_through(self) -> tuple[str, ...]:
+        """Go through all trials, and return the arguments of `Over`; the array rests then."""
         self._begin()
         with self._suspension:
             try:
                 while self._go_on():
                     pass
-                over = Over("end", self.progress.why_over)
+                over = "end", self.progress.why_over
             except NoMoreAnswers:
-                over = Over("stop", "there are no more answers")
+                over = "stop", "there are no more answers"
             except Over as left:
-                over = left
+                over = left.args
         trial, self.trial = self.trial, None
         self._withdraw()
         if trial is not None and self.progress.lacks_confidence(trial):
@@ -342,24 +332,20 @@ class Runner:
             pins.show_reference()
         now_s = self.device.now_s
         if not turned:
+            pace = self.protocol.trial
             self._play(Tone(*self.protocol.sound.cue))
-            self._start_times(now_s)
+            self._due_s.clear()
+            self._expect("warning", now_s, pace.warning_s)
+            if pace.exposure_from == "cue":
+                self._expect("exposure", now_s, pace.exposure_s)
+            if pace.exposure_s is None and not self._more_to_come:
+                self._expect("answer", now_s, pace.answer_s)
         self.is_shown = True
         self._log("cue", now_s, **shown)
         presenter.show(first=is_first, turned=turned)
         if not turned:
             which = f", {ordinal(self.stimulus)}" if self.stimulus else ""
             self.say(f"cue: {self.name}{which}")
-
-    def _start_times(self, now_s: float) -> None:
-        """Have the times of a trial count from a cue."""
-        pace = self.protocol.trial
-        self._due_s.clear()
-        self._expect("warning", now_s, pace.warning_s)
-        if pace.exposure_from == "cue":
-            self._expect("exposure", now_s, pace.exposure_s)
-        if pace.exposure_s is None and not self._more_to_come:
-            self._expect("answer", now_s, pace.answer_s)
 
     def _expect(self, what: str, from_s: float, after_s: float | None) -> None:
         if after_s is not None:
@@ -399,7 +385,8 @@ class Runner:
         self._log("answer", **told)
         self.say(f"answer: {self.name}, {asks.said(answer, spelling)}")
         outcome, was = asks.outcome(trial, answer), asks.was(trial, spelling)
-        if outcome and (trial.practice or self.protocol.trial.feedback):
+        part = self.protocol.practice if trial.practice else self.protocol.trial
+        if outcome and part.feedback:
             self.say(f"feedback: {outcome}{f', it was {was}' if was else ''}")
         self._free_s = self.device.now_s
         if self.progress.lacks_confidence(trial):
@@ -416,9 +403,7 @@ class Runner:
         self._free_s = self.device.now_s
 
     def _of_trial(self, what: Any) -> Asked:
-        given = self.progress.answer(self.trial) if self.trial else None
-        answer = "" if given is None else given.data["answer"]
-        return Asked(what, self.trial, self.attempt, self.presenter.explorations, answer)
+        return Asked(what, self.trial, self.attempt, self.presenter.explorations)
 
     def _turn(self, trial: Trial, steps: int) -> Trial:
         """Show the last stimulus at another value, and return the trial that is shown now."""
@@ -752,7 +737,7 @@ class Runner:
         if not reason:
             self.say("quit: type the reason after the word; stop ends for now alone")
             return
-        raise Over("end", "the participant stopped", reason=reason)
+        raise Over("end", "the participant stopped", reason)
 
     def help(self, _: str) -> None:
         """List what may be typed."""
