@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from vbraille.reading.explored import Explored
 
 _MOST_SAID, _MOST_DRAWN = 20, 8
-_BEFORE, _AFTER = 2, 3  # lines around the one under the hand
+_AROUND = (-2, -1, 1, 2, 3)  # lines that are shown around the one under the hand, by their steps
 _EVERY = 2  # polls from one state to the next
 _NUMBER = 0xFFFF_FFFF  # as much of a line's number as a frame has room for
 _PLACES = {
@@ -170,21 +170,17 @@ class LiveOutput(Output):
 
     def _lines(self, reader: Any) -> list[LineShown]:
         """Lines to be drawn, from top to bottom: the page, or the line and some around it."""
-        pitch_mm, part = reader.style.geometry.line_pitch_mm, reader.part
-        rows = enumerate(reader.parts)
+        pitch_mm, line = reader.style.geometry.line_pitch_mm, reader.line
+        rows = {row: part for row, part in enumerate(reader.parts) if part is not None}
         if not reader.rows:
-            steps = range(-_BEFORE, _AFTER + 1)
-            near = ((step, reader.layout.beside(part.line, step)) for step in steps)
-            rows = (
-                (step, line and Part(line, part.width) if step else part) for step, line in near
-            )
+            near = ((step, reader.layout.beside(line, step)) for step in _AROUND)
+            rows |= {step: Part(other, reader.width) for step, other in near if other is not None}
         return [
             line_shown(
-                each.line, first=each.first, count=len(each),
-                top_mm=row * pitch_mm, number=each.line.id & _NUMBER, under=each is part,
+                part.line, first=part.first, count=len(part), top_mm=row * pitch_mm,
+                number=part.line.id & _NUMBER, under=row == reader.row,
             )
-            for row, each in rows
-            if each is not None
+            for row, part in sorted(rows.items())
         ]  # fmt: skip
 
     def _picture(self, picture: Any) -> dict[str, Any]:
