@@ -231,19 +231,17 @@ class Reader(Surface):
 
     def _lay(self, part: Part, row: int) -> None:
         """Show a part of a line, on a page in a row with the lines around it."""
-        # Where a part was moved under the finger, the other lines begin where they do.
-        first = part.first if part.first >= 0 and part.first % part.width == 0 else 0
-        above = self._beyond(part.line, -1, row)[::-1]
-        below = self._beyond(part.line, 1, self.rows - row - 1)
-        over, under = ([Part(line, part.width, first) for line in of] for of in (above, below))
-        self.show_parts([*[None] * (row - len(over)), *over, part, *under], row)
+        above = self._beyond(part, -1, row)[::-1]
+        below = self._beyond(part, 1, self.rows - row - 1)
+        self.show_parts([*[None] * (row - len(above)), *above, part, *below], row)
 
-    def _beyond(self, line: Line, step: int, most: int) -> list[Line]:
-        """Lines after one, or before it."""
-        found: list[Line] = []
-        while len(found) < most and (following := self._neighbour(line, step)) is not None:
-            line = following
-            found.append(line)
+    def _beyond(self, part: Part, step: int, most: int) -> list[Part]:
+        """Parts of the lines after that of a part, or before it."""
+        # Where a part was moved under the finger, the others begin where they do.
+        first = part.first if part.first >= 0 and part.first % part.width == 0 else 0
+        line, found = part.line, list[Part]()
+        while len(found) < most and (line := self._neighbour(line, step)) is not None:
+            found.append(Part(line, part.width, first))
         return found
 
     def _arrive(self, *, another: bool = True) -> None:
@@ -345,9 +343,10 @@ class Reader(Surface):
         line = self._neighbour(self.lines[-1 if step > 0 else 0], step)
         if line is None:
             return False
+        part = Part(line, self.width)
         if step < 0:
-            line = [line, *self._beyond(line, -1, self.rows - 1)][-1]
-        self._lay(Part(line, self.width), 0)
+            part = [part, *self._beyond(part, -1, self.rows - 1)][-1]
+        self._lay(part, 0)
         if 0 <= self.finger_row < len(self.parts):
             self.enter(self.finger_row)
         if self.rows:
