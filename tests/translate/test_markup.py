@@ -162,6 +162,11 @@ def test_markdown_is_markup(markdown, wanted):
     assert said(markdown, "a.md") == wanted
 
 
+@pytest.mark.parametrize("markdown", ["*a* " * 100_000, "[a" * 50_000, ">" * 50_000 + "a"])
+def test_markdown_that_never_ends_is_its_text(markdown):
+    assert opened(markdown, "a.md").text.replace("\n", "").count("a") == markdown.count("a")
+
+
 def test_front_matter_says_title_and_language():
     source = opened("---\ntitle: >-\n  A long\n  title\nlang: pt_BR\n---\n\nText.", "a.md")
     assert (source.title, source.language, source.text) == ("A long title", "pt-BR", "Text.")

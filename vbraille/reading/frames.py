@@ -19,7 +19,7 @@ from vbraille.translate import Book, choose_table, text_source
 from vbraille.wording import count
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -31,39 +31,48 @@ if TYPE_CHECKING:
     from vbraille.render.program import Program
     from vbraille.translate import BrailleTable
 
+Path = tuple["NDArray[np.float64]", "NDArray[np.float64]", "NDArray[np.float64]"]
 _MOST_FRAMES = 10_000_000
 MOST_LINES = 1000  # of a page
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Rendered:
-    """A text on a display, in a style."""
+    """Lines of a text on a display, in a style.
+
+    Parameters
+    ----------
+    display, style
+        Display and style that they are rendered for.
+    lines
+        Lines with their text, and with the character that each cell stands for.
+    program
+        The lines as the engine takes them.
+    first : int
+        Number of the first line in its text, from 1.
+    """
 
     display: Display
     style: BrailleStyle
+    lines: tuple[Line, ...]
+    program: Program
+    first: int
 
-    def _recording(
-        self,
-        lines: Sequence[Line],
-        first: int,
-        rate_hz: float,
-        frames: NDArray[np.floating],
-        path: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
-        part: NDArray[np.int64],
-    ) -> Recording:
+    def _recording(self, path: Path, rate_hz: float) -> Recording:
         from vbraille.recording import Recording  # loads h5py
 
         display = replace(self.display, rate_hz=check_rate(rate_hz))
+        part, frames = self.program.poses(*path)
         return Recording(
             np.arange(len(frames)) / rate_hz,
             *path,
-            frames.astype(np.float32),
+            frames,
             replace(model_of(display), display=display, style=self.style),
-            [line.masks for line in lines],
-            part.clip(0, len(lines) - 1),
+            [line.masks for line in self.lines],
+            part.clip(0, len(self.lines) - 1),
             part,
-            first_line=first,
-            prints=[print_of(line) for line in lines],
+            first_line=self.first,
+            prints=[print_of(line) for line in self.lines],
         )
 
 
@@ -73,22 +82,21 @@ class RenderedLine(_Rendered):
 
     Parameters
     ----------
-    line
-        Line with its text, and with the character that each cell stands for.
     display, style
         Display and style that the line is rendered for.
     positions_mm : float64[n]
         Place of the array's centre in each frame; 0 is where the line begins.
     frames : float64[n, rows, columns]
         Deflections, 0 (rest) to 1 (full swing).
-    number : int
-        Number of the line in its text, from 1.
     """
 
-    line: Line
     positions_mm: NDArray[np.float64]
     frames: NDArray[np.float64]
-    number: int = 1
+
+    @property
+    def line(self) -> Line:
+        """The line, with its text, and with the character that each cell stands for."""
+        return self.lines[0]
 
     @property
     def cells(self) -> Cells:
@@ -123,12 +131,8 @@ class RenderedLine(_Rendered):
         """
         if not 0 < speed_mm_s < math.inf:
             raise InputError(f"speed_mm_s is {speed_mm_s:g}; it must be above 0")
-        step_mm = float(self.positions_mm[1] - self.positions_mm[0])
-        middle_mm = np.full(len(self), self.style.geometry.line_pitch_mm / 2)
-        path = self.positions_mm, middle_mm, 0.0 * middle_mm
-        part = np.zeros(len(self), np.int64)
-        rate_hz = speed_mm_s / step_mm
-        return self._recording([self.line], self.number, rate_hz, self.frames, path, part)
+        x_mm = self.positions_mm
+        return self._recording(_path(x_mm, self.program.own_y_mm), speed_mm_s / (x_mm[1] - x_mm[0]))
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the deflections over the places of the array, an actuator a row.
@@ -158,19 +162,15 @@ class RenderedPage(_Rendered):
 
     Parameters
     ----------
-    lines
-        Lines with their text, and with the character that each cell stands for.
     display, style
         Display and style that the page is rendered for.
+    lines
+        Lines with their text, and with the character that each cell stands for.
     program
         The page as the engine takes it.
     first : int
         Number of the first line in its text, from 1.
     """
-
-    lines: tuple[Line, ...]
-    program: Program
-    first: int = 1
 
     def frames(
         self,
@@ -224,10 +224,7 @@ class RenderedPage(_Rendered):
         InputError
             If the rate cannot be.
         """
-        path = _path(x_mm, y_mm, theta_rad)
-        part, frames = self.program.poses(*path)
-        part = part.astype(np.int64)
-        return self._recording(self.lines, self.first, rate_hz, frames, path, part)
+        return self._recording(_path(x_mm, y_mm, theta_rad), rate_hz)
 
 
 def render_text(
@@ -281,11 +278,12 @@ def render_text(
             f"the text takes {count(layout.count(), 'line')} on the {model.title}; say which with "
             f"line=1, and so on"
         )
-    if line is not None and line < 1:
+    number = 1 if line is None else line
+    if number < 1:
         raise InputError(f"line is {line}; it must be 1 or more")
-    found = layout.line(line or 1)
+    found = layout.line(number)
     if found is None:
-        raise InputError(f"the text ends at line {layout.count()}; line {line} is past that")
+        raise InputError(f"the text ends at line {layout.count()}; line {number} is past that")
     half_mm = model.display.span_mm / 2
     way_mm = model.style.geometry.extent_mm(len(found)) + 2 * half_mm
     if not way_mm / _MOST_FRAMES <= step_mm <= way_mm:
@@ -293,12 +291,10 @@ def render_text(
             f"step_mm is {step_mm:g}; it must be {way_mm / _MOST_FRAMES:.2g} to {way_mm:.3g} mm"
         )
     positions_mm = np.arange(0.0, way_mm + step_mm / 2, step_mm) - half_mm
-    try:
-        program = model.style.render(found.masks, model.display)
-    except ValueError as error:
-        raise InputError(str(error)) from None
+    program = _shown(lambda: model.style.render(found.masks, model.display))
     frames = program.path(positions_mm).astype(np.float64)
-    return RenderedLine(model.display, model.style, found, positions_mm, frames, line or 1)
+    how = model.display, model.style, (found,), program, number
+    return RenderedLine(*how, positions_mm, frames)
 
 
 def render_page(
@@ -341,11 +337,17 @@ def render_page(
         raise InputError(f"the text ends at line {layout.count()}; give lines up to that")
     if len(lines) > MOST_LINES:
         raise InputError(f"a page has at most {MOST_LINES} lines; say which with first and last")
+    masks = [line.masks for line in lines]
+    program = _shown(lambda: model.style.render_page(masks, model.display))
+    return RenderedPage(model.display, model.style, lines, program, first)
+
+
+def _shown(render: Callable[[], Program]) -> Program:
+    """Program that a function makes, where a display has the rows for it."""
     try:
-        program = model.style.render_page([line.masks for line in lines], model.display)
+        return render()
     except ValueError as error:
         raise InputError(str(error)) from None
-    return RenderedPage(model.display, model.style, lines, program, first)
 
 
 def check_lines(first: int, last: int | None) -> None:
@@ -356,10 +358,8 @@ def check_lines(first: int, last: int | None) -> None:
         raise InputError(f"last is {last} and first is {first}; last must not be before first")
 
 
-def _path(
-    x_mm: ArrayLike, y_mm: ArrayLike, theta_rad: ArrayLike
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Places and angles of a path, checked, in arrays of one length; float64[n] each."""
+def _path(x_mm: ArrayLike, y_mm: ArrayLike, theta_rad: ArrayLike = 0.0) -> Path:
+    """Places and angles of a path, checked, in arrays of one length."""
     poses = [np.atleast_1d(np.asarray(of, np.float64)) for of in (x_mm, y_mm, theta_rad)]
     x, y, theta = (np.ascontiguousarray(of) for of in np.broadcast_arrays(*poses))
     if x.ndim != 1 or not all(np.isfinite(of).all() for of in (x, y, theta)):

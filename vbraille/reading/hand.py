@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -53,14 +54,14 @@ class HandWatch:
         self._end_mm, self._line = end_mm, line
         self._by_hand, self._otherwise = by_hand, otherwise
         self._said: set[str] = set()
-        self._since_s = self._refused_s = -1.0  # below 0: not now
-        self._at_mm = self._edge_mm = np.nan
+        self._moved_s = self._taken_s = math.nan  # when it last moved, and took a frame
+        self._at_mm = self._edge_mm = math.nan
         self._way = 1  # to the right, -1 to the left
         self._turns_mm: list[float] = []  # away from the end that the hand is to come to
 
     def rest(self) -> None:
         """Note that the array is to rest: what went before does not count."""
-        self._since_s = self._refused_s = -1.0
+        self._moved_s = self._taken_s = math.nan
 
     def watch(self, ticks: NDArray[np.void], *, reached: bool, patient: bool) -> Iterator[str]:
         """Sentences to be said after these ticks of the line.
@@ -73,32 +74,28 @@ class HandWatch:
             Whether the hand may do as it likes, so that only the device is watched.
         """
         now_s, flags = int(ticks["time_ns"][-1]) / 1e9, int(ticks["flags"][-1])
-        if flags & HELD:
-            self._refused_s = now_s if self._refused_s < 0 else self._refused_s
-            if now_s - self._refused_s >= _REFUSED_S:
-                yield from self._once(
-                    f"the device takes no frames, so that nothing is felt; switch it off and on, "
-                    f"and {self._line} goes on"
-                )
-            if now_s - self._refused_s >= _HOPELESS_S:
-                self.hopeless = (
-                    f"the device took no frames for {_HOPELESS_S:g} s; switch it off and on"
-                )
-        else:
-            self._refused_s = -1.0
+        if not flags & HELD or math.isnan(self._taken_s):
+            self._taken_s = now_s
+        if now_s - self._taken_s >= _REFUSED_S:
+            yield from self._once(
+                f"the device takes no frames, so that nothing is felt; switch it off and on, "
+                f"and {self._line} goes on"
+            )
+        if now_s - self._taken_s >= _HOPELESS_S:
+            self.hopeless = f"the device took no frames for {_HOPELESS_S:g} s; switch it off and on"
         if patient or not self._by_hand or flags & (HELD | _PLACING):
-            self._since_s = -1.0
+            self._moved_s = math.nan
             return
         if reached:
             goal = f"{self._line} is read; move back to the left stop, at {self._stop_mm:.1f} mm"
         else:
             goal = f"{self._line} ends at {self._end_mm:.0f} mm; read to its end and move back"
         x_mm = ticks["x_mm"]
-        if self._since_s < 0 or (np.abs(x_mm - self._at_mm) > _STILL_MM).any():
-            self._since_s, self._at_mm = now_s, float(x_mm[-1])
-        if now_s - self._since_s > _STILL_S and np.isnan(self._at_mm):
+        if math.isnan(self._moved_s) or (np.abs(x_mm - self._at_mm) > _STILL_MM).any():
+            self._moved_s, self._at_mm = now_s, float(x_mm[-1])
+        if now_s - self._moved_s > _STILL_S and math.isnan(self._at_mm):
             yield from self._once("the device has not told its place; see that it is on")
-        elif now_s - self._since_s > _STILL_S:
+        elif now_s - self._moved_s > _STILL_S:
             still = f"the finger is still at {max(self._at_mm, 0):.0f} mm, and {goal}"
             yield from self._once(f"{still}, or {self._otherwise}")
         self._turn(float(x_mm[-1]), reached=reached)

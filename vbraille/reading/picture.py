@@ -44,7 +44,8 @@ _BUTTONED = 2  # switches that have a button of the device, too
 SAID = ("not said", "said", "said, with sounds")  # elements as the finger comes to them
 _NOWHERE = math.nan, math.nan
 _PICTURE = "picture"  # a goal that is reached where anything of it is felt
-_command = partial(command, where=Where.PICTURE | Where.FIGURE)
+_ANY = Where.PICTURE | Where.FIGURE
+_command, _both_ways = partial(command, where=_ANY), partial(both_ways, where=_ANY)
 
 
 def way(place: Point, to: Point) -> str:
@@ -130,14 +131,11 @@ class Picture(Explored):
         self._states: dict[int, int] = {}  # of the picture's switches, by their keys
         self._element = -1  # number of the element that was gone to last
         self._number = 0
-        self._chosen = y_mm is not None
-        self._y_mm = zoom * (loaded.scene.canvas.height_mm / 2 if y_mm is None else y_mm)
         self._take(loaded, zoom)
+        self._y_mm = self.index.inside()[1] if y_mm is None else zoom * y_mm
 
     def begin(self) -> None:
         """Show the picture where something of it is felt, and say what it is."""
-        if not (self.flat or self._chosen):
-            self._y_mm = self.index.inside()[1]
         self._show()
         self.steer()
         self.say_picture()
@@ -172,7 +170,7 @@ class Picture(Explored):
             self.device.give(sweep(self.loaded.scene.canvas))
         elif self.device.steered:
             self._glide(self.index.inside(), _LED_MM_S)
-        elif self.flat or not self._chosen:
+        else:
             self._goal = _PICTURE, self.index.inside()
 
     # What is shown
@@ -209,16 +207,6 @@ class Picture(Explored):
         self.aperture, self._aim = aperture, None
         self._show()
         self.say_zoom()
-
-    def _zoom(self, step: int) -> None:
-        """Have the picture nearer or farther by a step, about the finger."""
-        canvas, now = self.loaded.scene.canvas, self.aperture.zoom
-        most = MOST_MM / max(canvas.width_mm, canvas.height_mm)
-        others = [zoom for zoom in ZOOMS if zoom <= most and (zoom - now) * step > 0]
-        if others:
-            self._zoom_to(min(others, key=lambda zoom: abs(zoom - now)))
-        else:
-            self.refuse_beyond(f"zoom: {now:g}", up=step > 0)
 
     def _zoom_to(self, zoom: float) -> None:
         try:
@@ -332,29 +320,31 @@ class Picture(Explored):
     )
     def say_here(self) -> None:
         """Say what is under the finger, and where."""
-        place = self.place
+        place, spot, nearest = self._here()
         if place is None:
             self.say("the place of the finger is not known yet")
             return
-        spot = self.index.where(*place)
-        if spot is None:
-            said = f"nothing with a name{self._nearest(place)}"
-        else:
+        said = f"nothing with a name{nearest}"
+        if spot is not None:
             where = {"edge": "edge of ", "inside": "inside "}.get(spot.where, "")
             said = f"{where}{spot.element.name}"
         self.say(f"here: {said}; {self.aperture.placed(*place)}")
 
-    def _nearest(self, place: Point) -> str:
-        found = self.index.nearest(*place)
-        return "" if found is None else f", nearest {found[0].name}, {way(place, found[1])}"
+    def _here(self) -> tuple[Point | None, Spot | None, str]:
+        """Place of the finger, what is there, and words for what is nearest if nothing is."""
+        place = self.place
+        spot = None if place is None else self.index.where(*place)
+        found = None if place is None or spot is not None else self.index.nearest(*place)
+        if place is None or found is None:
+            return place, spot, ""
+        return place, spot, f", nearest {found[0].name}, {way(place, found[1])}"
 
     @_command("say more of what is under the finger", "w", also="button:2")
     def describe(self) -> None:
         """Say more of what is under the finger."""
-        place = self.place
-        spot = None if place is None else self.index.where(*place)
+        _, spot, nearest = self._here()
         if spot is None:
-            self.say(f"nothing here{'' if place is None else self._nearest(place)}")
+            self.say(f"nothing here{nearest}")
             return
         element = spot.element
         kind, *inner = dict.fromkeys(one.kind.replace("-", " ") for one in each(element.pattern))
@@ -406,16 +396,15 @@ class Picture(Explored):
         """Ask for an element, and go there."""
 
         def answer(typed: str) -> None:
-            element = self.index.find(typed) if typed.strip() else None
+            element = self.index.find(typed)
             if element is None:
                 self.say(f"no element {typed!r}; shift-o lists them", Cue.NOT_FOUND)
             else:
                 self._go_to(self.index.elements.index(element))
 
-        names = [element.name for element in self.index.elements]
-        self.ask("element", answer, names[::-1])
+        self.ask("element", answer, [element.name for element in self.index.elements[::-1]])
 
-    @both_ways("element", "n e | p E", "n e | p", first=True, where=Where.PICTURE | Where.FIGURE)
+    @_both_ways("element", "n e | p E", "n e | p", first=True)
     def element(self, step: int) -> None:
         """Go to the next element, or to the one before."""
         count = len(self.index.elements)
@@ -467,15 +456,19 @@ class Picture(Explored):
         title = next((one.title for one in switches if one.title), f"switch {key}")
         self.say(f"{title}: {name}")
 
-    @_command("zoom in, about the finger", "+ =", also="button:6", first=True, steers=True)
-    def zoom_in(self) -> None:
-        """Have the picture nearer."""
-        self._zoom(1)
-
-    @_command("zoom out, about the finger", "-", also="button:7", steers=True)
-    def zoom_out(self) -> None:
-        """Have the picture farther."""
-        self._zoom(-1)
+    @_both_ways(
+        ("zoom in, about the finger", "zoom out, about the finger"), "+ = | -",
+        also="button:6 | button:7", name="zoom-in zoom-out", first=True, steers=True,
+    )  # fmt: skip
+    def zoom(self, step: int) -> None:
+        """Have the picture nearer or farther by a step, about the finger."""
+        canvas, now = self.loaded.scene.canvas, self.aperture.zoom
+        most = MOST_MM / max(canvas.width_mm, canvas.height_mm)
+        others = [zoom for zoom in ZOOMS if zoom <= most and (zoom - now) * step > 0]
+        if others:
+            self._zoom_to(others[0 if step > 0 else -1])
+        else:
+            self.refuse_beyond(f"zoom: {now:g}", up=step > 0)
 
     @_command("show the whole picture, at zoom 1", "0", also="button:8", steers=True)
     def whole(self) -> None:
@@ -485,21 +478,13 @@ class Picture(Explored):
         else:
             self._zoom_to(1.0)
 
-    @_command("more contrast", "c")
-    def more_contrast(self) -> None:
-        """Show the picture with more contrast."""
-        self.contrast(_CONTRAST_STEP)
-
-    @_command("less contrast", "C")
-    def less_contrast(self) -> None:
-        """Show the picture with less contrast."""
-        self.contrast(-_CONTRAST_STEP)
-
-    def contrast(self, by: float) -> None:
+    @_both_ways(("more contrast", "less contrast"), "c | C", name="more-contrast less-contrast")
+    def contrast(self, step: int) -> None:
         """Show the picture with another share of the actuators' swing."""
-        contrast = round(min(max(self._contrast + by, _CONTRAST_STEP), 1.0), 2)
+        wanted = self._contrast + step * _CONTRAST_STEP
+        contrast = round(min(max(wanted, _CONTRAST_STEP), 1.0), 2)
         if contrast == self._contrast:
-            self.refuse_beyond(f"contrast: {contrast:g}", up=by > 0)
+            self.refuse_beyond(f"contrast: {contrast:g}", up=step > 0)
             return
         self._contrast = contrast
         self._take(self.loaded, self.aperture.zoom)

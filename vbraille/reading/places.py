@@ -8,8 +8,9 @@ import re
 import sqlite3
 import time
 from contextlib import suppress
+from dataclasses import astuple, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError
 from vbraille.wording import count
@@ -26,9 +27,8 @@ PRAGMA journal_mode=WAL;
 PRAGMA synchronous=NORMAL;
 PRAGMA secure_delete=ON;
 CREATE TABLE IF NOT EXISTS books (
-    digest TEXT PRIMARY KEY, path BLOB, title TEXT, read_s REAL,
-    place INTEGER DEFAULT 0, share REAL DEFAULT 0, around TEXT DEFAULT '',
-    bookmarks TEXT DEFAULT '{{}}', options TEXT DEFAULT '{{}}'
+    digest TEXT PRIMARY KEY, path BLOB, title TEXT, read_s REAL, place INTEGER, share REAL,
+    around TEXT, bookmarks TEXT, options TEXT
 );
 PRAGMA user_version={_VERSION};
 """
@@ -72,13 +72,24 @@ def nearest(source: Source, words: str, place: int, share: float | None = None) 
     return min(place if share is None else int(share * len(text)), max(len(text) - 1, 0))
 
 
-class ListedBook(NamedTuple):
-    """A book in the list."""
+@dataclass(slots=True)
+class BookRow:
+    """A row of the table: a book, and what is kept of it; without a digest it is not written."""
 
     digest: str
-    path: Path
+    encoded: bytes
     title: str
-    share: float
+    read_s: float = 0.0
+    place: int = 0
+    share: float = 0.0
+    around: str = ""
+    bookmarks: str = "{}"
+    options: str = "{}"
+
+    @property
+    def path(self) -> Path:
+        """Path of the book's file."""
+        return Path(os.fsdecode(self.encoded))
 
 
 class KeptBook:
@@ -88,8 +99,10 @@ class KeptBook:
     ----------
     places
         The books.
-    digest
-        Checksum of the book's content.
+    row
+        Row of the book.
+    changed
+        Whether the book's content is another than when the row was written.
 
     Attributes
     ----------
@@ -99,26 +112,24 @@ class KeptBook:
         Options with which the text was opened, and the table that was chosen while reading.
     """
 
-    def __init__(self, places: Places, digest: str, *, changed: bool = False) -> None:
-        self._places, self._digest, self._changed = places, digest, changed
-        row = places.row("digest", digest)
-        assert row is not None, "a row that `Places.book` has written"
-        self.options: dict[str, Any] = json.loads(row["options"])
-        self._marks: dict[str, list[Any]] = json.loads(row["bookmarks"])
-        self._place, self._share, self._around = row["place"], row["share"], row["around"]
+    def __init__(self, places: Places, row: BookRow, *, changed: bool) -> None:
+        self._places, self._row, self._changed = places, row, changed
+        self.options: dict[str, Any] = json.loads(row.options)
+        self._marks: dict[str, list[Any]] = json.loads(row.bookmarks)
 
     def find(self, source: Source, say: Callable[[str], None]) -> int:
         """Place at which reading goes on; in a book that has changed, near its words."""
+        row = self._row
         if not self._changed:
-            return self._place
+            return row.place
         self._marks = {
             name: [nearest(source, words, place), words]
             for name, (place, words) in self._marks.items()
         }
-        if not self._place:
+        if not row.place:
             return 0
-        place = nearest(source, self._around, self._place, self._share)
-        exact = self._around.strip() and source.text.startswith(self._around, place)
+        place = nearest(source, row.around, row.place, row.share)
+        exact = row.around.strip() and source.text.startswith(row.around, place)
         gone = "your exact place is gone; this is close to it"
         say("the book has changed; this is your place" if exact else gone)
         return place
@@ -146,7 +157,8 @@ class KeptBook:
         self._write(bookmarks=json.dumps(self._marks))
 
     def _write(self, **values: Any) -> None:
-        self._places.write(self._digest, **values)
+        self._row = replace(self._row, **values)
+        self._places.write(self._row)
 
 
 class Places:
@@ -179,29 +191,21 @@ class Places:
 
     def book(self, digest: str, path: Path, title: str) -> KeptBook:
         """Find what is kept of a book by its content, or by its path if that has changed."""
-        known = self.row("digest", digest)
-        before = None if known else self.row("path", os.fsencode(path))
-        if before is not None:
-            self.write(before["digest"], digest=digest)
-        with suppress(sqlite3.Error):
-            self._db.execute("INSERT OR IGNORE INTO books (digest) VALUES (?)", (digest,))
-        self.write(digest, path=os.fsencode(path), title=title, read_s=time.time())
-        if self.row("digest", digest) is None:  # it cannot be written, which was said
-            self._db = _connect(None)
-            return self.book(digest, path, title)
-        return KeptBook(self, digest, changed=before is not None)
+        named = {"digest": digest, "encoded": os.fsencode(path), "title": title}
+        same = self._rows("WHERE digest=?", digest)
+        former = [] if same else self._rows("WHERE path=?", named["encoded"])
+        row = replace([*same, *former, BookRow(**named)][0], **named, read_s=time.time())
+        self.write(row)  # before the former goes, so that a place is never in neither
+        with suppress(InputError):  # which cannot be written was said
+            for each in former:
+                self.forget(each.digest)
+        return KeptBook(self, row, changed=bool(former))
 
-    def listed(self) -> list[ListedBook]:
+    def listed(self) -> list[BookRow]:
         """All books, the one that was read last first."""
-        columns = "digest, path, title, share"
-        return [
-            ListedBook(digest, Path(os.fsdecode(path)), title, share)
-            for digest, path, title, share in self._db.execute(
-                f"SELECT {columns} FROM books ORDER BY read_s DESC"
-            )
-        ]
+        return self._rows("ORDER BY read_s DESC")
 
-    def numbered(self, number: int) -> ListedBook:
+    def numbered(self, number: int) -> BookRow:
         """Book of a number in the list, from 1.
 
         Raises
@@ -230,15 +234,14 @@ class Places:
         except sqlite3.Error as error:
             raise InputError(f"the book is not forgotten: {error}") from None
 
-    def row(self, column: str, value: str | bytes) -> sqlite3.Row | None:
-        """Row of a book; None if there is none."""
-        return self._db.execute(f"SELECT * FROM books WHERE {column}=?", (value,)).fetchone()
+    def _rows(self, which: str, *values: str | bytes) -> list[BookRow]:
+        return [BookRow(*row) for row in self._db.execute(f"SELECT * FROM books {which}", values)]
 
-    def write(self, key: str, /, **values: Any) -> None:
-        """Write values of a book; a fault is said once, and the next value may be written."""
-        sets = ", ".join(f"{name}=?" for name in values)
+    def write(self, row: BookRow) -> None:
+        """Write a row; a fault is said once, and the next row may be written."""
         try:
-            self._db.execute(f"UPDATE books SET {sets} WHERE digest=?", (*values.values(), key))
+            if row.digest:
+                self._db.execute(f"REPLACE INTO books VALUES (?{', ?' * 8})", astuple(row))
             self._fault = ""
         except sqlite3.Error as error:
             if str(error) != self._fault:
@@ -252,7 +255,6 @@ def _connect(path: Path | None) -> sqlite3.Connection:
         if path is not None:
             path.parent.mkdir(0o700, parents=True, exist_ok=True)
         db = sqlite3.connect(path or ":memory:", timeout=0.2, isolation_level=None)
-        db.row_factory = sqlite3.Row
         (version,) = db.execute("PRAGMA user_version").fetchone()
         if version not in (0, _VERSION):
             raise sqlite3.OperationalError("it is a file of another version of vbraille")

@@ -14,6 +14,7 @@ import numpy as np
 from vbraille.engine.engine import EndOfLine
 from vbraille.errors import InputError
 from vbraille.newfile import new_file
+from vbraille.pictures.paths import PosedPath
 from vbraille.reading.frames import print_of
 from vbraille.recording import Recorder, SceneRecorded
 from vbraille.signals import EAR
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.layout import Layout, Line
-    from vbraille.pictures.paths import PosedPath
     from vbraille.render import Model
+    from vbraille.render.program import Program
     from vbraille.scene.scene import Canvas
     from vbraille.simulation.hand import Hand
 
@@ -101,7 +102,7 @@ def render_reading(
     count = frames = 0
     with EAR.deferred(), new_file(path, replace=replace_file) as file:
         recorder = Recorder(file, display, layout.width)
-        for page, along_mm, down_mm in _walk(iter(lines), model, hand, rate_hz, per_page):
+        for page, x_mm, y_mm in _walk(iter(lines), model, hand, rate_hz, per_page):
             if not count:
                 recorder.describe(
                     model,
@@ -111,22 +112,15 @@ def render_reading(
                     sha256=source.sha256(),
                 )
             row = min([recorder.add_line(line.masks, print_of(line)) for line in page])
-            masks = [line.masks for line in page]
-            program = (
-                style.render_page(masks, display) if per_page else style.render(masks[0], display)
-            )
-            for span in _blocks(along_mm.size):
-                x_mm, y_mm = along_mm[span], down_mm[span]
-                t_s = (frames + np.arange(x_mm.size)) / rate_hz
-                if per_page:
-                    part, made = program.poses(x_mm, y_mm)
-                    at = row + np.clip(part, 0, len(page) - 1)
-                    recorder.add_frames(t_s, x_mm, at, made, y_mm=y_mm, part=part)
-                else:
-                    made = program.path(x_mm)
-                    recorder.add_frames(t_s, x_mm, row, made, y_mm=program.own_y_mm)
-                frames += x_mm.size
-                EAR.heed()
+            if per_page:
+                program = style.render_page([line.masks for line in page], display)
+            else:
+                program = style.render(page[0].masks, display)
+                y_mm = np.full(x_mm.size, program.own_y_mm)
+            t_s, still = (frames + np.arange(x_mm.size)) / rate_hz, np.zeros((x_mm.size, 2))
+            way = PosedPath(t_s, x_mm, y_mm, still[:, 0], still)
+            _write(recorder, program, way, row, len(page))
+            frames += x_mm.size
             count += len(page)
             done(page[-1])
     return Rendered(count, frames, frames / rate_hz)
@@ -203,20 +197,31 @@ def render_picture(
             ),
             path=hand,
         )
-        for span in _blocks(frames):
-            t_s, velocity = way.t_s[span], way.velocity_mm_s[span]
-            x_mm, y_mm, theta_rad = way.x_mm[span], way.y_mm[span], way.theta_rad[span]
-            going_on = span.start > 0
-            _, made = program.poses(x_mm, y_mm, theta_rad, t_s, velocity, going_on=going_on)
-            recorder.add_frames(t_s, x_mm, 0, made, y_mm=y_mm, theta_rad=theta_rad)
-            EAR.heed()
-            done((span.start + t_s.size) / frames)
+        _write(recorder, program, way, done=done)
     return Rendered(0, frames, frames / rate_hz), loaded.notes
 
 
-def _blocks(count: int) -> Iterator[slice]:
-    """Spans of frames that are made and written at once."""
-    return (slice(start, start + _BLOCK_FRAMES) for start in range(0, count, _BLOCK_FRAMES))
+def _write(
+    recorder: Recorder,
+    program: Program,
+    way: PosedPath,
+    row: int = 0,
+    rows: int = 1,
+    done: Callable[[float], None] = lambda _share: None,
+) -> None:
+    """Write the frames of a program on a way over it, whose parts are some rows of the page."""
+    for start in range(0, way.t_s.size, _BLOCK_FRAMES):
+        span = slice(start, start + _BLOCK_FRAMES)
+        t_s, x_mm, y_mm, theta_rad = (
+            each[span] for each in (way.t_s, way.x_mm, way.y_mm, way.theta_rad)
+        )
+        velocity = way.velocity_mm_s[span]
+        going_on = start > 0
+        part, frames = program.poses(x_mm, y_mm, theta_rad, t_s, velocity, going_on=going_on)
+        line = row + part.clip(0, rows - 1)
+        recorder.add_frames(t_s, x_mm, line, frames, y_mm=y_mm, theta_rad=theta_rad, part=part)
+        EAR.heed()
+        done((start + t_s.size) / way.t_s.size)
 
 
 def _walk(

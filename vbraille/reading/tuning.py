@@ -1,17 +1,15 @@
-"""Find how braille feels best, two ways at a time: whichever two tell most.
+"""Find how braille feels best, two ways at a time.
 
-Knob after knob, of two values the reader chooses the one that is nearer to what is liked. Which two
-come next, and what is liked, follow from the choices so far by QUEST+ (`vbraille.adaptive`): a
-reader who is not sure, or errs, is asked again about what is in doubt. All follows from the list of
-choices.
+Knob after knob, of two values the reader chooses the one that is nearer to what is liked. Each
+choice narrows the interval in which that is, by less than half, so that one error is made good by
+the next choices. All follows from the list of choices.
 """
 
 from __future__ import annotations
 
-from functools import lru_cache, partial
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING
 
-from vbraille.adaptive.observer import Grid, Quest, nearer
 from vbraille.knobs import KNOBS
 from vbraille.reading.commands import Where, both_ways, command
 from vbraille.reading.explored import Explored
@@ -21,32 +19,14 @@ if TYPE_CHECKING:
     from vbraille.reading.reader import Reader
     from vbraille.render import BrailleStyle
 
-ORDER = ("texture", "contrast", "dot_width", "dot_spacing", "cell_gap")
 CHOICES_PER_KNOB = 6  # at ten seconds each, the five knobs take five minutes
-_SHARES = {"dot_width": (0.5, 2.0), "dot_spacing": (0.6, 1.8), "cell_gap": (0.6, 1.8)}
-_LEAST = {"contrast": 0.2}
-# Ours: the model's grid. Values stand so many steps apart; how sure a reader is, as the standard
-# deviation of what is felt, is so many parts of the interval; and one choice in so many is a slip.
-_STEPS, _UNSURE, _SLIPS = 24, tuple(0.03 * (0.4 / 0.03) ** (n / 5) for n in range(6)), 0.03
-_FARTHEST = 0.5  # between two values, as a part of the interval: no two are a world apart
-_LIKED = "liked"
+# Interval of each knob; of distances, as parts of what the style has.
+_WITHIN = {
+    "texture": (0.0, 1.0), "contrast": (0.2, 1.0), "dot_width": (0.5, 2.0),
+    "dot_spacing": (0.6, 1.8), "cell_gap": (0.6, 1.8),
+}  # fmt: skip
+_KEPT = 0.7  # of an interval, after a choice; an error is made good as long as this is over 0.5
 _command = partial(command, where=Where.TUNING)
-Asked = tuple[tuple[tuple[float, float], bool], ...]
-
-
-@lru_cache(maxsize=1)
-def _quest() -> Quest:
-    """Model of a reader who compares shares of an interval, 0 to 1."""
-    shares = tuple(n / _STEPS for n in range(_STEPS + 1))
-    pairs = [(a, b) for a in shares for b in shares if 0 < b - a <= _FARTHEST]
-    axes = {_LIKED: shares, "unsure": _UNSURE, "slips": (_SLIPS,)}
-    return Quest(Grid(nearer(), axes), pairs, _LIKED)
-
-
-@lru_cache(maxsize=256)
-def _next(asked: Asked) -> tuple[float, float]:
-    low, high = _quest().next(asked)
-    return low, high
 
 
 class Course:
@@ -71,58 +51,39 @@ class Course:
         Sentences on the values that are settled.
     """
 
-    total = len(ORDER) * CHOICES_PER_KNOB
+    total = len(_WITHIN) * CHOICES_PER_KNOB
 
     def __init__(self, style: BrailleStyle, choices: list[int]) -> None:
         self.choices, self.style = choices, style
         self.found: list[str] = []
         self.knob: Knob | None = None
         self.pair = (0.0, 0.0)
-        for number, knob in enumerate(KNOBS[name] for name in ORDER):
-            low, high = _LEAST.get(knob.name, 0.0), 1.0
-            if knob.unit:
-                low, high = (knob.value(style) * share for share in _SHARES[knob.name])
-            asked: Asked = ()
-            for which in choices[number * CHOICES_PER_KNOB :][:CHOICES_PER_KNOB]:
-                asked = (*asked, (_next(asked), (which == 1) == _lower_first(asked)))
-            if len(asked) < CHOICES_PER_KNOB:
+        for number, (name, within) in enumerate(_WITHIN.items()):
+            knob = KNOBS[name]
+            least, most = (end * (knob.value(style) if knob.unit else 1.0) for end in within)
+            low, high, made = least, most, choices[number * CHOICES_PER_KNOB :][:CHOICES_PER_KNOB]
+            for asked, which in enumerate(made):
+                kept = _KEPT * (high - low)
+                if (which == 1) == (asked % 2 == 0):  # the lower value comes first every other time
+                    high = low + kept
+                else:
+                    low = high - kept
+            quarter = (high - low) / 4
+            if len(made) < CHOICES_PER_KNOB:
                 self.knob = knob
-                ends = [knob.nearest(round(low + s * (high - low), 2)) for s in _next(asked)]
-                first, second = ends if _lower_first(asked) else ends[::-1]
-                self.pair = first, second
+                ends = knob.nearest(low + quarter), knob.nearest(high - quarter)
+                self.pair = ends if len(made) % 2 == 0 else ends[::-1]
                 return
-            liked, least, most = (round(low + s * (high - low), 2) for s in _liked(asked))
-            value = knob.nearest(liked)
-            self.style = _with(self.style, knob, value)
-            ends = f"{least:g} to {most:g} {knob.unit}".rstrip()
-            self.found.append(f"{knob.said(value)}, 95 % interval {ends}")
+            # An end that every choice led to is liked best.
+            liked = low if low == least else high if high == most else (low + high) / 2
+            self.style = self.style.replace(**{knob.field: knob.nearest(liked)})
+            self.found.append(knob.said(knob.nearest(liked)))
 
     def shown(self, which: int) -> BrailleStyle:
         """Style of the one or the other of the next choice, 1 or 2."""
         if self.knob is None:
             return self.style
-        return _with(self.style, self.knob, self.pair[which - 1])
-
-
-def _with(style: BrailleStyle, knob: Knob, value: Any) -> BrailleStyle:
-    """Style with a value of a knob."""
-    return style.replace(**{knob.field: value})
-
-
-def _lower_first(asked: Asked) -> bool:
-    """Tell whether the lower value is the first of a choice: every other time, against learning."""
-    return len(asked) % 2 == 0
-
-
-def _liked(asked: Asked) -> tuple[float, float, float]:
-    """Share that is liked best and its interval; an end that every choice led to is it."""
-    estimate = _quest().estimate(_LIKED, asked)
-    lower = [lower for _, lower in asked]
-    if all(lower):
-        return 0.0, 0.0, estimate.high
-    if not any(lower):
-        return 1.0, estimate.low, 1.0
-    return estimate.mean, estimate.low, estimate.high
+        return self.style.replace(**{self.knob.field: self.pair[which - 1]})
 
 
 class Tuning(Explored):
@@ -180,15 +141,13 @@ class Tuning(Explored):
         """Feel the other one."""
         self._feel(3 - self._which)
 
-    @_command("choose the first", "1", also="button:1", first=True)
-    def first(self) -> None:
-        """Choose the first."""
-        self._choose([*self.course.choices, 1])
-
-    @_command("choose the second", "2", also="button:2", first=True)
-    def second(self) -> None:
-        """Choose the second."""
-        self._choose([*self.course.choices, 2])
+    @both_ways(
+        ("choose the first", "choose the second"), "1 | 2", also="button:1 | button:2",
+        name="first second", first=True, where=Where.TUNING,
+    )  # fmt: skip
+    def choose(self, step: int) -> None:
+        """Choose the first, or the second where the step is -1."""
+        self._choose([*self.course.choices, 1 if step > 0 else 2])
 
     @_command("take the last choice back", "u", first=True)
     def undo(self) -> None:

@@ -247,10 +247,9 @@ def check_fields(protocol: Protocol, given: Mapping[str, str]) -> dict[str, str]
             names = ", ".join(known) or "none"
             raise InputError(f"{protocol.name} has no field {name!r}; known: {names}")
         choices = known[name].choices
-        if choices and value not in choices:
-            raise InputError(f"{name} is {value!r}; give {' or '.join(choices)}")
-        if not value.isprintable():
-            raise InputError(f"{name} is {value!r}; give one line of text")
+        if (choices and value not in choices) or not value.isprintable():
+            hint = " or ".join(choices) or "one line of text"
+            raise InputError(f"{name} is {value!r}; give {hint}")
     return {name: given.get(name, "") for name in known}
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from vbraille.translate.blocks import Block, BlockKind, MarkKind, cut_marks
+from vbraille.translate.numbering import whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -34,8 +34,7 @@ class _Cell(NamedTuple):
 
     def spans(self, what: str) -> int:
         """Number of the columns or rows that it covers, by its attribute."""
-        value = self.element.get(what).strip()
-        return min(max(int(value), 1), _MOST) if re.fullmatch(r"\d{1,6}", value) else 1
+        return min(max(whole(self.element.get(what)), 1), _MOST)
 
 
 def table_blocks(
@@ -52,14 +51,8 @@ def table_blocks(
     lays_out
         Whether the table says that it is none.
     """
-    elements = list(_rows(table))
-    rows = [
-        [_cell(each, read) for each in row.elements if each.name in ("td", "th", "above")]
-        for row, _ in elements
-    ]
-    grid = _grid(rows)
-    rows = [[cell for cell in row if cell.element.name != "above"] for row in rows]
-    cells = [cell for row in rows for cell in row]
+    rows = list(_rows(table, read))
+    cells = [cell for _, row in rows for cell in row if cell.element.name != "above"]
     kinds = [block.kind for cell in cells for block in cell.blocks]
     if lays_out or len(cells) <= 1 or any(kind in _LAYING_OUT for kind in kinds):
         for cell in cells:
@@ -67,12 +60,12 @@ def table_blocks(
         return
     texts = {cell.element.get("id"): cell.whole.text for cell in cells}
     headers: dict[int, str] = {}
-    for (_, is_head), row, line in zip(elements, rows, grid, strict=True):
+    for (is_head, row), line in zip(rows, _grid([row for _, row in rows]), strict=True):
         yield from (b for cell in row for b in cell.blocks if b.kind is BlockKind.PAGE)
         shown = line[:1] if len(set(map(id, line))) == 1 else line
-        if not any(cell is not None and cell.whole.text for cell in shown):
+        wholes = [cell.whole if cell and cell.whole.text else EMPTY for cell in shown]
+        if all(each is EMPTY for each in wholes):
             continue
-        is_head = is_head or (len(row) > 1 and all(c.is_header or not c.whole.text for c in row))
         # The cell that heads a row is said with the row, and not above its cells.
         own = row[0].element.get("id") if row and row[0].is_header else ""
         told = []
@@ -80,8 +73,9 @@ def table_blocks(
             named = cell.element.get("headers").split() if cell else []
             said = " ".join(texts[name] for name in named if name in texts and name != own)
             told.append(said if named else headers.get(column, ""))
-        block = joined([c.whole if c and c.whole.text else EMPTY for c in shown], BETWEEN)
-        if is_head:
+        block = joined(wholes, BETWEEN)
+        named = any(cell.is_header for cell in row) and len(row) > 1
+        if is_head or (named and all(cell.is_header or not cell.whole.text for cell in row)):
             for column, cell in enumerate(line):
                 text = cell.whole.text if cell else ""
                 headers[column] = f"{headers.get(column, '')} {text}".strip()
@@ -90,19 +84,21 @@ def table_blocks(
         yield block.replace(kind=BlockKind.ROW, level=0, headers=tuple(told) if any(told) else ())
 
 
-def _rows(table: Element, *, is_head: bool = False) -> Iterator[tuple[Element, bool]]:
+def _rows(
+    table: Element, read: Callable[[Element], list[Block]], *, is_head: bool = False
+) -> Iterator[tuple[bool, list[_Cell]]]:
     """Rows of a table, with whether they are its head; not those of tables in it."""
     for child in table.elements:
         if child.name == "tr":
-            yield child, is_head
+            row = []
+            for element in child.elements:
+                if element.name in ("td", "th", "above"):
+                    blocks = read(element)
+                    texts = [block for block in blocks if block.kind is not BlockKind.PAGE]
+                    row.append(_Cell(element, blocks, joined(texts, " ")))
+            yield is_head, row
         elif child.name in ("thead", "tbody", "tfoot"):
-            yield from _rows(child, is_head=child.name == "thead")
-
-
-def _cell(element: Element, read: Callable[[Element], list[Block]]) -> _Cell:
-    blocks = read(element)
-    whole = joined([block for block in blocks if block.kind is not BlockKind.PAGE], " ")
-    return _Cell(element, blocks, whole)
+            yield from _rows(child, read, is_head=child.name == "thead")
 
 
 def _grid(rows: list[list[_Cell]]) -> list[list[_Cell | None]]:

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 _NAMES = names("html")
+_EMPHASES = {
+    name: MarkKind(kind) for kind, told in _NAMES["emphases"].items() for name in told.split()
+}
 _SMALL = {MarkKind.SUPERSCRIPT: RAISED, MarkKind.SUBSCRIPT: LOWERED}
 _EMPHATIC = (BlockKind.HEADING, BlockKind.QUOTE)
 _WORD_NOTE = re.compile(r"#_(?:ftn|edn)\d+$")
@@ -437,15 +440,12 @@ class Walker:
 
 def _emphases(element: Element, words: set[str]) -> list[MarkKind]:
     """Kinds of emphasis that an element gives its text."""
-    named = {element.name}
+    named = [element.name]
     if element.name == "span":
-        named |= {word for word in words if word.startswith(("sub", "sup"))}
+        named += [word for word in words if word.startswith(("sub", "sup"))]
     style = element.get("style").lower().replace(" ", "")
-    return [
-        MarkKind(kind)
-        for kind, told in _NAMES["emphases"].items()
-        if any(name in named or (":" in name and name in style) for name in told.split())
-    ]
+    named += [css for css in _EMPHASES if style and ":" in css and css in style]
+    return [_EMPHASES[name] for name in named if name in _EMPHASES]
 
 
 def _clipped(text: str, start: int, marks: list[Mark], role: _Role) -> Block:

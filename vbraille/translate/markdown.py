@@ -7,19 +7,18 @@ from typing import TYPE_CHECKING
 
 from vbraille.translate.encodings import read_text_of
 from vbraille.translate.html import tree_blocks
+from vbraille.translate.plain import text_blocks
 from vbraille.translate.trees import read_tree
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from markdown_it.rules_block import StateBlock
+    from markdown_it.rules_core import StateCore
 
     from vbraille.translate.blocks import Block
     from vbraille.translate.source import Source
 
-# Quotations and lists within others that are read as such. The parser drops what is nested deeper
-# than its own limit, which is not reached.
-_DEEPEST, _LIMIT = 100, 110
+_LONGEST = 20_000  # characters of a paragraph in which marks are looked for
 # What some writers of Markdown set behind a heading, for links to it.
 _NAME = re.compile(r"(.*?)\s*\{\s*#([^\s{}]+)[^{}]*\}\s*$", re.S)
 _FRONT = re.compile(r"^(title|lang|language)\s*:[ \t]*(.*(?:\n[ \t]+.*)*)", re.M | re.I)
@@ -45,15 +44,19 @@ def read_markdown(source: Source, encoding: str | None = None) -> Iterator[Block
     from mdit_py_plugins.superscript import superscript_plugin
 
     text = read_text_of(source, encoding)
-    parser = MarkdownIt("commonmark", {"maxNesting": _LIMIT}).enable(["table", "strikethrough"])
-    parser.block.ruler.before("table", "deepest", _deepest)
+    parser = MarkdownIt("commonmark", {"maxNesting": len(text)}).enable(["table", "strikethrough"])
+    parser.core.ruler.before("inline", "leave_long", _leave_long)
     for plugin in (front_matter_plugin, footnote_plugin, deflist_plugin):
         parser.use(plugin)
     # As pandoc has it: "$5 and $6" is no formula, nor is "$20,000 or US$15".
     parser.use(dollarmath_plugin, allow_space=False, allow_digits=False)
     parser.use(sub_plugin).use(superscript_plugin)
     parser.use(attrs_plugin, spans=True).use(anchors_plugin, max_level=6)
-    tokens = parser.parse(text)
+    try:
+        tokens = parser.parse(text)
+    except RecursionError:
+        source.note(f"{source.name} nests its parts too deep, and is read as plain text")
+        return text_blocks(source, text)
     for token in tokens:
         if token.type == "front_matter":
             _read_front(source, token.content)
@@ -85,16 +88,8 @@ def _read_front(source: Source, front: str) -> None:
             source.language = source.language or folded.replace("_", "-")
 
 
-def _deepest(state: StateBlock, first: int, after: int, silent: bool) -> bool:
-    """Take the text of what is nested too deep for a paragraph, without its nesting."""
-    if silent or state.level < _DEEPEST:
-        return False
-    lines = state.getLines(first, after, state.blkIndent, keepLastLF=False).split("\n")
-    state.push("paragraph_open", "p", 1)
-    inline = state.push("inline", "", 0)
-    inline.content = "\n".join(line.lstrip("> \t") for line in lines).strip()
-    inline.children = []
-    inline.map = [first, after]
-    state.push("paragraph_close", "p", -1)
-    state.line = after
-    return True
+def _leave_long(state: StateCore) -> None:
+    """Make plain texts of paragraphs that are too long to look for marks in them."""
+    for token in state.tokens:
+        if token.type == "inline" and len(token.content) > _LONGEST:
+            token.type = "text"

@@ -20,7 +20,7 @@ def climbed(rule, answer, count):
     """The answers that a staircase is given until it is over."""
     history = []
     while len(history) < count and (level := rule.next(DESIGN, history, "1")) is not None:
-        history.append(Outcome(level, answer(level[0]), 0.0))
+        history.append(Outcome(level, answer(level[0])))
     return history
 
 

@@ -191,19 +191,6 @@ def test_a_line_break_in_an_item_is_a_blank_and_an_item_is_there_once(tmp_path):
         load(tmp_path, TEXTS, items_csv="strings\ntree\n")
 
 
-def test_strings_are_drawn_by_a_rule(tmp_path):
-    rule = "rule = 'strings'\ncharacters = ['a', 'c', '4']\nlength = 3\ncount = 6\ndiffer_by = 2\n"
-    text = HEAD + "[design]\nkind = 'items'\n[items]\n" + rule
-    strings = load(tmp_path, text).items_shown
-    assert len(set(strings)) == 6
-    assert all(
-        sum(a != b for a, b in zip(one, other, strict=True)) >= 2
-        for one in strings for other in strings if one != other
-    )  # fmt: skip
-    with pytest.raises(InputError, match="count"):
-        load(tmp_path, text.replace("count = 6", "count = 60"))
-
-
 def test_all_lines_of_a_passage_are_planned(tmp_path):
     text = TEXTS.replace('"items"', '"list"').replace('[items]\nfile = "items.csv"\n', "")
     text = text.replace(

@@ -121,6 +121,8 @@ def test_practice_goes_on_until_enough_are_right_and_tells_what_it_was(tmp_path)
     told = [sentence for sentence in sat.said if sentence.startswith("feedback: ")]
     assert ["wrong" in told[0], "right" in told[1]] == [True, True]
     assert rights[0] in told[0]
+    untold = made(tmp_path, MINI + practice + "feedback = false\n", "P02").sit(answers="simulated")
+    assert not any(sentence.startswith("feedback: ") for sentence in untold.said)
 
 
 def test_the_gap_before_a_trial_is_drawn_and_kept(tmp_path):

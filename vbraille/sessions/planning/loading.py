@@ -16,7 +16,7 @@ from vbraille.braille.spelling import LETTERS, name_dots, spell, to_braille
 from vbraille.errors import InputError
 from vbraille.sessions.planning.analysis import MEASURES_OF, Analysis
 from vbraille.sessions.planning.design import Compared, ItemList, Setting, StringList
-from vbraille.sessions.planning.items import Items, read_items, read_orders, read_words
+from vbraille.sessions.planning.items import read_items, read_orders
 from vbraille.sessions.planning.procedures import QuestPlus, quest_of
 from vbraille.sessions.planning.protocol import Condition, Protocol, ProtocolFile
 from vbraille.sessions.planning.trial import Stimulus
@@ -99,9 +99,10 @@ def _resolved(tables: ProtocolFile, files: dict[str, bytes]) -> Protocol:
     if isinstance(design, ItemList) != (items is not None):
         raise WrongValue("items", "and [design] kind = 'items' go together; give both or neither")
     if items is not None:
-        rows = _rows(protocol, items)
+        rows = read_items(files[items.file], items.file)
+        shown = _told("items.file", lambda: protocol.spelled(rows))
+        columns = dict(zip(shown, rows.values(), strict=True))
         design = structs.replace(design, strings=tuple(rows))
-        columns = dict(zip(protocol.spelled(rows), rows.values(), strict=True))
         protocol = structs.replace(protocol, design=design, columns=columns)
     if protocol.shows_pictures and practice.most and not practice.strings:
         # A picture is learnt before it is asked for, and nothing of it is given away.
@@ -112,22 +113,6 @@ def _resolved(tables: ProtocolFile, files: dict[str, bytes]) -> Protocol:
         orders = read_orders(files[design.orders], design.orders, names, protocol.groups)
         protocol = structs.replace(protocol, orders=orders)
     return structs.replace(protocol, analysis=_planned(protocol))
-
-
-def _rows(protocol: Protocol, items: Items) -> dict[str, dict[str, str]]:
-    """Return the strings of [items], each with the other columns of its file."""
-    name = items.file or ""
-    content = protocol.files.get(name, b"")
-    if items.rule is None:
-        rows = read_items(content, name)
-        _told("items.file", lambda: protocol.spelled(rows))
-        return rows
-    words = _told("items.file", lambda: protocol.spelled(read_words(content)))
-    cells = items.characters
-    if not protocol.has_texts:
-        spelled = _told("items.characters", lambda: [spell(c, protocol.masks) for c in cells])
-        cells = map(to_braille, spelled)
-    return {string: {} for string in items.draw(words, list(cells))}
 
 
 def _planned(protocol: Protocol) -> Analysis:

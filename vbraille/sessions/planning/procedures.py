@@ -27,26 +27,24 @@ from vbraille.adaptive.observer import Estimate, Grid, Quest, nearer, psychometr
 from vbraille.sessions.planning.design import AnyDesign, Compared
 from vbraille.sessions.planning.questions import Question
 from vbraille.sessions.planning.trial import Trial
-from vbraille.sessions.planning.values import Count, Number, Parameter, Positive, Seconds, Share
+from vbraille.sessions.planning.values import Count, Number, Parameter, Positive, Share
 from vbraille.toml import Table, WrongValue
 
 THRESHOLD, CENTRE = "threshold", "centre"
 PLACES = 9
-NEVER = -1.0  # no deviation is as small
 
 Level = tuple[float, ...]
 Chances = Annotated[tuple[Share, ...], Meta(min_length=1)]
 
 
 class Outcome(NamedTuple):
-    """A level that was shown, whether the answer was positive, and when it was given.
+    """A level that was shown, and whether the answer was positive.
 
     An answer is positive if it is right or yes; of two that are preferred, if it is the lower.
     """
 
     level: Level
     positive: bool
-    t_s: float
 
 
 class Procedure(Table, frozen=True, kw_only=True, tag_field="kind"):
@@ -62,8 +60,6 @@ class Procedure(Table, frozen=True, kw_only=True, tag_field="kind"):
         Whether strings are harder to read with less or with more of it.
     trials
         Most trials of a condition; None for as many as the design has.
-    seconds
-        Time of the session after which no further trial is chosen.
     """
 
     parameter: Parameter | None = None
@@ -71,7 +67,6 @@ class Procedure(Table, frozen=True, kw_only=True, tag_field="kind"):
     most: Number | None = None
     harder: Literal["less", "more"] = "less"
     trials: Count | None = None
-    seconds: Seconds | None = None
 
     def levels(self, design: AnyDesign) -> tuple[float, ...]:
         """Return the levels that are named, or values of which one is preferred, rising."""
@@ -82,10 +77,8 @@ class Procedure(Table, frozen=True, kw_only=True, tag_field="kind"):
 
     def next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
         """Return the next level after the answers of a condition; None if enough was asked."""
-        out_of_time = self.seconds and history and history[-1].t_s >= self.seconds
-        if out_of_time or len(history) >= (self.trials or len(history) + 1):
-            return None
-        return self._next(design, history, seed)
+        enough = self.trials is not None and len(history) >= self.trials
+        return None if enough else self._next(design, history, seed)
 
     def _next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
         raise NotImplementedError
@@ -126,7 +119,7 @@ class Staircase(Procedure, frozen=True, kw_only=True, tag="staircase"):
     def climbs(self, design: AnyDesign, history: list[Outcome], seed: str) -> list[Climb]:
         """Return the staircases after some answers."""
         climbs = [Climb(self, design, level) for level in self.start]
-        for number, ((level, *_), positive, _) in enumerate(history):
+        for number, ((level, *_), positive) in enumerate(history):
             # An answer that was corrected late may leave one more than the staircases wanted.
             (_drawn(climbs, number, seed) or climbs[0]).take(level, positive)
         return climbs
@@ -204,8 +197,8 @@ class QuestPlus(Procedure, frozen=True, kw_only=True, tag="quest"):
     spread, guess, lapse
         Possible values of its other parameters. Without guess, strings are not guessed, and of
         several stimuli each is guessed as often.
-    sd, width
-        Standard deviation, and width of the interval of 95 %, that are precise enough.
+    sd
+        Standard deviation that is precise enough.
     at_least
         Trials of a condition before precision counts.
     """
@@ -218,20 +211,17 @@ class QuestPlus(Procedure, frozen=True, kw_only=True, tag="quest"):
     guess: Chances | None = None
     lapse: Chances = (0.03,)
     sd: Positive | None = None
-    width: Positive | None = None
     at_least: Count = 10
 
     def _next(self, design: AnyDesign, history: list[Outcome], seed: str) -> Level | None:
         found = self._estimate(design, history)
-        width = found.high - found.low
-        precise = found.sd <= (self.sd or NEVER) or width <= (self.width or NEVER)
-        if precise and len(history) >= self.at_least:
+        if self.sd and found.sd <= self.sd and len(history) >= self.at_least:
             return None
-        return quest_of(self, design).next(_asked(history))
+        return quest_of(self, design).next(history)
 
     def _estimate(self, design: AnyDesign, history: list[Outcome]) -> Estimate:
         quest = quest_of(self, design)
-        return quest.estimate(next(iter(quest.grid.axes)), _asked(history))
+        return quest.estimate(next(iter(quest.grid.axes)), history)
 
     def found(self, design: AnyDesign, history: list[Outcome], seed: str) -> str:
         """Say the estimate and its interval."""
@@ -239,10 +229,6 @@ class QuestPlus(Procedure, frozen=True, kw_only=True, tag="quest"):
             return ""
         found = self._estimate(design, history)
         return f"{found.mean:.3g}, 95 % between {found.low:.3g} and {found.high:.3g}"
-
-
-def _asked(history: list[Outcome]) -> list[tuple[Level, bool]]:
-    return [(level, positive) for level, positive, _ in history]
 
 
 @lru_cache(maxsize=8)
@@ -293,7 +279,7 @@ def put(table: Procedure, design: AnyDesign, trial: Trial, level: Level) -> Tria
 
 
 def outcome_of(
-    design: AnyDesign, question: Question, trial: Trial, level: float, answer: str, t_s: float
+    design: AnyDesign, question: Question, trial: Trial, level: float, answer: str
 ) -> Outcome:
     """Return what an answer to a trial, as it was shown, tells a procedure.
 
@@ -304,12 +290,12 @@ def outcome_of(
     """
     positive, values = question.positive(trial, answer), trial.values
     if not isinstance(design, Compared):
-        return Outcome((level,), positive, t_s)
+        return Outcome((level,), positive)
     if design.reference is None:
         preferred = values[int(answer) - 1]
-        return Outcome(tuple(sorted(values)), preferred == min(values), t_s)
+        return Outcome(tuple(sorted(values)), preferred == min(values))
     apart = max(abs(value - design.reference) for value in values)
-    return Outcome((round(apart, PLACES),), positive, t_s)
+    return Outcome((round(apart, PLACES),), positive)
 
 
 AnyProcedure = Staircase | QuestPlus

@@ -19,7 +19,7 @@ from vbraille.display import Display
 from vbraille.render import MODELS, BrailleStyle, Model
 from vbraille.sessions.planning.analysis import Analysis
 from vbraille.sessions.planning.design import AnyDesign, Compared, values_said
-from vbraille.sessions.planning.items import Items, OrderRow
+from vbraille.sessions.planning.items import OrderRow
 from vbraille.sessions.planning.procedures import AnyProcedure
 from vbraille.sessions.planning.questionnaire import Item
 from vbraille.sessions.planning.questions import AnyQuestion, Identify, Read, Spelling, Which
@@ -27,6 +27,7 @@ from vbraille.sessions.planning.trial import Stimulus
 from vbraille.sessions.planning.values import (
     Count,
     Duration,
+    FileName,
     Label,
     Look,
     Name,
@@ -101,6 +102,12 @@ class Rules(Table, frozen=True, kw_only=True):
     balanced_quarters: bool = False
     each_letter: Count | None = None
     each_letter_at_least: Count | None = None
+
+
+class Items(Table, frozen=True, kw_only=True):
+    """Source of the strings of a design of items: a CSV file with the column "string"."""
+
+    file: FileName
 
 
 class Until(Table, frozen=True, kw_only=True):

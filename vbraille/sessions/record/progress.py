@@ -254,8 +254,8 @@ class Progress:
                 if trial.condition == condition and answer is not None and not trial.catch:
                     shown = self._as_cued(trial)
                     level = getattr(shown.stimuli[0].look, self.protocol.varied)
-                    given = answer.data["answer"], answer.t_s
-                    found.append(outcome_of(design, asks, shown, level, *given))
+                    given = answer.data["answer"]
+                    found.append(outcome_of(design, asks, shown, level, given))
         seed = f"{self.protocol.name} {self.plan.participant} {self.plan.seed} {condition}"
         return self._outcomes[condition], seed
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from vbraille.errors import InputError
+from vbraille.files import read_text
 from vbraille.sessions.planning.questionnaire import Item
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.simulated.observer import FeltFrames
@@ -141,16 +142,11 @@ class Scripted(Answers):
     """
 
     def __init__(self, path: Path, after: int) -> None:
-        try:
-            text = path.read_text("utf-8-sig")
-        except OSError as error:
-            raise InputError(f"{path} cannot be read: {error.strerror}") from None
-        except UnicodeDecodeError:
-            raise InputError(f"{path} is not UTF-8; save it as UTF-8") from None
+        lines = read_text(path, "file of answers").splitlines()
         self.name = str(path)
         self._left = [
             Line(line.strip(), number)
-            for number, line in enumerate(text.splitlines(), 1)
+            for number, line in enumerate(lines, 1)
             if number > after and line.strip() and not line.lstrip().startswith("#")
         ]
 

@@ -79,9 +79,9 @@ def open_answers(given: Any, conditions: Conditions, progress: Progress) -> Answ
     elif spec == "program":
         raise InputError(f"the answers came from a program; give {setting('answers')} typed")
     elif kind == "simulated":
-        from vbraille.sessions.running.reader import simulated_answers
+        from vbraille.sessions.running.reader import Simulated
 
-        source = simulated_answers(progress.protocol, progress.plan, habits)
+        source = Simulated(progress.protocol, progress.plan, habits)
     elif Path(spec).exists():
         source = Scripted(Path(spec), progress.script_line)
     else:

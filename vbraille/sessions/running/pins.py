@@ -131,27 +131,24 @@ class Pins(Presenter):
             match message:
                 case DisplayStands():
                     self._lose("the conventional display is another one")
-                    data = {"display": message.title, "columns": message.columns}
+                    data: dict[str, Any] = {"display": message.title, "columns": message.columns}
                     said = f"display: {message.title}, {message.columns} cells"
-                    self._tell("display", said, data | {"spec": self._spec})
+                    data["spec"] = self._spec
+                    self._happened.append(Happening("display", self.now_s, data, said))
                 case DisplayAway():
                     self._taken = False
                     self._lose(message.why)
                     said = f"display: {message.why}"
-                    self._tell("device", said, {"what": said})
+                    self._happened.append(Happening("device", self.now_s, {"what": said}, said))
                 case CellsTaken() if message.number == self._number and not self._taken:
                     self._taken = True
                     # Number 0 are the blank cells of a display that came late.
                     reference = {"reference": True} if self._is_reference else {}
-                    data = {"cells": to_braille(self._stands)} | reference
+                    data = {"cells": to_braille(self._stands), **reference}
                     if self._number:
-                        self._tell("pins", "", data, message.at_ns / 1e9)
+                        self._happened.append(Happening("pins", message.at_ns / 1e9, data))
 
     def _lose(self, why: str) -> None:
         """Tell of a fault if something stood on a display that is gone."""
         if self._masks:
-            self._tell("fault", "", {"what": why})
-
-    def _tell(self, kind: str, said: str, data: dict[str, Any], at_s: float | None = None) -> None:
-        at_s = self.now_s if at_s is None else at_s
-        self._happened.append(Happening(kind, at_s, data, said))
+            self._happened.append(Happening("fault", self.now_s, {"what": why}))

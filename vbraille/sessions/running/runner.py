@@ -385,7 +385,8 @@ class Runner:
         self._log("answer", **told)
         self.say(f"answer: {self.name}, {asks.said(answer, spelling)}")
         outcome, was = asks.outcome(trial, answer), asks.was(trial, spelling)
-        if outcome and (trial.practice or self.protocol.trial.feedback):
+        part = self.protocol.practice if trial.practice else self.protocol.trial
+        if outcome and part.feedback:
             self.say(f"feedback: {outcome}{f', it was {was}' if was else ''}")
         self._free_s = self.device.now_s
         if self.progress.lacks_confidence(trial):
