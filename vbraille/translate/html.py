@@ -13,7 +13,7 @@ from vbraille.translate.encodings import tidy
 from vbraille.translate.formulas import formula_text
 from vbraille.translate.grids import EMPHASES, joined, table_blocks
 from vbraille.translate.numbering import BULLET, list_markers, whole
-from vbraille.translate.spellings import lowered, raised
+from vbraille.translate.spellings import LOWERED, RAISED, small
 from vbraille.translate.trees import Element, inside, names, read_tree
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ _NAMES = names("html")
 _EMPHASES = {
     name: MarkKind(kind) for kind, told in _NAMES["emphases"].items() for name in told.split()
 }
-_SMALL = {MarkKind.SUPERSCRIPT: raised, MarkKind.SUBSCRIPT: lowered}
+_SMALL = {MarkKind.SUPERSCRIPT: RAISED, MarkKind.SUBSCRIPT: LOWERED}
 _EMPHATIC = (BlockKind.HEADING, BlockKind.QUOTE)
 _WORD_NOTE = re.compile(r"#_(?:ftn|edn)\d+$")
 _BLANKS = re.compile(r"[\t\r\n\f][ \t\r\n\f]*| [ \t\r\n\f]+")  # but single spaces
@@ -236,7 +236,7 @@ class Walker:
                 if kind in _SMALL and refers:
                     continue
                 if kind in _SMALL:
-                    self._text[start:] = _SMALL[kind]("".join(self._text[start:]))
+                    self._text[start:] = small("".join(self._text[start:]), _SMALL[kind])
                 self._marks.append(Mark(kind, start, len(self._text)))
         if is_block:
             self._end()
