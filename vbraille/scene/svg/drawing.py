@@ -250,9 +250,8 @@ class SvgDrawing:
         for element in root.iter():
             if own_id := element.get("id"):
                 self._ids.setdefault(own_id, element)
-            if name_of(element) == "script":
-                self.note(element, "it is never run, and ignored")
-            if any(str(key).startswith("on") for key in element.keys()):  # noqa: SIM118 - no dict
+            handled = any(str(key).startswith("on") for key in element.keys())  # noqa: SIM118 - no dict
+            if handled or name_of(element) == "script":
                 self.note(element, "its script is never run")
         self._named: set[str] = set()
         self._used: list[Element] = []
@@ -628,17 +627,14 @@ class SvgDrawing:
         if name_of(element) == "pattern":
             return BLACK
         stops: list[Element] = []
-        after: Element | None = element
         for _ in range(_MOST_LINKS):
-            if after is not None and not stops:
-                stops = [child for child in after if name_of(child) == "stop"]
-                after = self._ids.get(link_of(after)[1:])
+            stops = stops or [child for child in element if name_of(child) == "stop"]
+            element = self._ids.get(link_of(element)[1:], element)
         colors: set[Color] = set()
         for stop in stops:
             style = self._sheets.of(stop, INITIAL, self._units)
             color = color_of(style["stop-color"]) or BLACK
-            opacity = share_of(style["stop-opacity"])
-            colors.add(color._replace(alpha=color.alpha * opacity))
+            colors.add(color._replace(alpha=color.alpha * share_of(style["stop-opacity"])))
         plain = len(colors) == 1 or all(color.alpha <= LEAST_SHARE for color in colors)
         return next(iter(colors), None) if plain else BLACK
 
