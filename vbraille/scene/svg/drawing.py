@@ -36,8 +36,8 @@ from vbraille.scene.svg.document import (
     PX_MM,
     AffineMap,
     Color,
+    Style,
     StyleSheets,
-    Units,
     about,
     affine,
     angle_of,
@@ -67,7 +67,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.scene.patterns import AnyPattern
-    from vbraille.scene.svg.document import Box, Element, Point, Style
+    from vbraille.scene.svg.document import Box, Element, Point
     from vbraille.scene.svg.outlines import Contour, Ring
 
 # Elements that only stand in a drawing to be used, or say something about it.
@@ -103,8 +103,6 @@ class _Place:
     ----------
     matrix
         Map from their coordinates to mm on the canvas.
-    units
-        Sizes that their lengths are of.
     style
         Style of the element around them.
     look
@@ -124,7 +122,6 @@ class _Place:
     """
 
     matrix: AffineMap
-    units: Units
     style: Style
     look: ClassLook | None = None
     strength: float = 1.0
@@ -195,7 +192,7 @@ def read_svg(path: Path, class_looks: Mapping[str, ClassLook] | None = None) -> 
     return FoundScene(scene, lines_of(scene.elements, drawing.made), drawing.warnings())
 
 
-def size_px(root: Element, style: Mapping[str, str], name: str) -> Point:
+def size_px(root: Element, style: Style, name: str) -> Point:
     """Width and height of a drawing, in pixels of 1/96 inch.
 
     Where they are not given as lengths, they are those of the viewBox.
@@ -206,7 +203,7 @@ def size_px(root: Element, style: Mapping[str, str], name: str) -> Point:
         If there is none of these.
     """
     sizes = [
-        None if "%" in text else Units().length(text, 0.0)
+        None if "%" in text else style.length(text, 0.0)
         for text in (style["width"], style["height"])
     ]
     if (view := view_box_of(root.get("viewBox"))) is not None:
@@ -262,18 +259,19 @@ class SvgDrawing:
             self._sheets = StyleSheets(root, self.note)
         except InputError as error:
             raise InputError(f"{name}: {error}") from None
-        self._style = self._sheets.of(root, INITIAL, Units())
+        self._style = self._sheets.of(root, Style(INITIAL))
         self.size_px = size_px(root, self._style, name)
-        self._units = Units(self.size_px, self.size_px)
+        self._initial = Style(INITIAL, self.size_px, self.size_px)
+        self._style = changed(self._initial, values=self._style.values)
 
     def elements(self) -> list[AnyPattern]:
         """Patterns of the whole drawing."""
         if self._style["display"] == "none":
             return []
         # What is beyond the page is kept.
-        style = {**self._style, "overflow": "visible"}
+        style = changed(self._style, values={**self._style.values, "overflow": "visible"})
         strength = share_of(style["opacity"])
-        place = _Place(AffineMap(PX_MM), self._units.sized(style), style, strength=strength)
+        place = _Place(AffineMap(PX_MM), style, strength=strength)
         return self._in_view(self._root, place, self.size_px)
 
     def note(self, element: Element, remark: str) -> None:
@@ -320,7 +318,7 @@ class SvgDrawing:
             inner = fit(view, size, element.get("preserveAspectRatio") or "")
             place = changed(place, matrix=place.matrix @ inner)
             size = view[2:]
-        place = changed(place, units=changed(place.units, view=size))
+        place = changed(place, style=changed(place.style, view=size))
         return [] if place.clip == [] else self._inside(element, place)
 
     def _holds(self, element: Element) -> bool:
@@ -351,7 +349,7 @@ class SvgDrawing:
             picture = '; put the picture into a scene file, as kind = "image"'
             self.note(element, f"it is ignored{picture * (name == 'image')}")
             return []
-        style = self._sheets.of(element, around.style, around.units)
+        style = self._sheets.of(element, around.style)
         look = self._look(element) or around.look
         strength = around.strength * share_of(style["opacity"])
         faint = strength <= LEAST_SHARE and around.cutting is None
@@ -359,7 +357,6 @@ class SvgDrawing:
             return []
         place = changed(
             around,
-            units=around.units.sized(style),
             style=style,
             look=look,
             strength=strength,
@@ -424,7 +421,7 @@ class SvgDrawing:
             self.note(element, "a text does not cut; it is ignored")
             return []
         lines: list[_Line] = []
-        self._gather(element, place.style, place.units, lines)
+        self._gather(element, place.style, lines)
         along = cmath.rect(1.0, cmath.phase(place.matrix.p + place.matrix.q))
         down = along * 1j
         before: complex | None = None
@@ -450,21 +447,21 @@ class SvgDrawing:
             found += self._lined(line.element, [label])
         return found
 
-    def _gather(self, element: Element, style: Style, units: Units, lines: list[_Line]) -> None:
+    def _gather(self, element: Element, style: Style, lines: list[_Line]) -> None:
         """Add the lines of a text or a part of it, which begins one where it has a place."""
         before = lines[-1].place if lines else 0j
-        start = self._start_of(element, units, before)
+        start = self._start_of(element, style, before)
         if start is not None or not lines:
             lines.append(_Line(element, style, start or 0j))
         lines[-1].text += element.text or ""
         for child in element:
             if name_of(child) in _PARTS:
-                inner = self._sheets.of(child, style, units)
+                inner = self._sheets.of(child, style)
                 if inner["display"] != "none" and inner["visibility"] != "hidden":
-                    self._gather(child, inner, units.sized(inner), lines)
+                    self._gather(child, inner, lines)
             lines[-1].text += child.tail or ""
 
-    def _start_of(self, element: Element, units: Units, before: complex) -> complex | None:
+    def _start_of(self, element: Element, style: Style, before: complex) -> complex | None:
         """Place of a part of a text; None if it goes on where the part before ends."""
         if name_of(element) == "textPath":
             self.note(
@@ -482,10 +479,10 @@ class SvgDrawing:
                 found[name] = words[0]
             if words[1:]:
                 self.note(element, f"its letters have places in {name}; the first one counts")
-        move = units.place(found.get("dx"), found.get("dy"))
+        move = style.place(found.get("dx"), found.get("dy"))
         if "x" not in found and "y" not in found and not move.imag:
             return None
-        place = units.place(found.get("x"), found.get("y"))
+        place = style.place(found.get("x"), found.get("y"))
         x = place.real if "x" in found else before.real
         y = place.imag if "y" in found else before.imag
         return complex(x, y) + move
@@ -501,7 +498,7 @@ class SvgDrawing:
         if target in self._used or target in element.iterancestors():
             self.note(element, "it uses an element that it stands in; ignored")
             return []
-        start = AffineMap(r=place.units.place(element.get("x"), element.get("y")))
+        start = AffineMap(r=place.style.place(element.get("x"), element.get("y")))
         there = changed(place, matrix=place.matrix @ start, named=False, context=place)
         self._used.append(target)
         found = self._drawn(target, there, (element.get("width"), element.get("height")))
@@ -512,25 +509,25 @@ class SvgDrawing:
         self, element: Element, place: _Place, sizes: tuple[str | None, ...]
     ) -> list[AnyPattern]:
         """Patterns of a drawing in a drawing, which is fitted into its rectangle and cut to it."""
-        units = place.units
+        style = place.style
         size: list[float] = []
         for key, given, whole in zip(
-            ("width", "height"), sizes or (None, None), units.view, strict=True
+            ("width", "height"), sizes or (None, None), style.view, strict=True
         ):
-            texts = (given, place.style[key], "100%")
-            lengths = (units.length(text, whole) for text in texts)
+            texts = (given, style[key], "100%")
+            lengths = (style.length(text, whole) for text in texts)
             size.append(next(one for one in lengths if one is not None))
         if min(size) <= 0:
             self.note(element, "it has no size, and is left out")
             return []
-        start = AffineMap(r=units.place(element.get("x"), element.get("y")))
+        start = AffineMap(r=style.place(element.get("x"), element.get("y")))
         return self._in_view(
             element, changed(place, matrix=place.matrix @ start), (size[0], size[1])
         )
 
     def _of_shape(self, element: Element, name: str, place: _Place) -> list[AnyPattern]:
         """Patterns of a shape and of its markers, the lowest first."""
-        path = outlines.path_of(element, place.style, place.units)
+        path = outlines.path_of(element, place.style)
         segments, whole = outlines.segments_of(path)
         if not whole:
             self.note(
@@ -567,7 +564,7 @@ class SvgDrawing:
         self, element: Element, name: str, place: _Place
     ) -> tuple[Fill | None, dict[str, Any]]:
         """Fill of a shape, and its stroke or its dots."""
-        look, style, units = place.look or ClassLook(), place.style, place.units
+        look, style = place.look or ClassLook(), place.style
 
         def note(remark: str) -> None:
             self.note(element, remark)
@@ -584,9 +581,9 @@ class SvgDrawing:
             if style["vector-effect"] == "non-scaling-stroke":
                 view = view_box_of(self._root.get("viewBox")) or (0.0, 0.0, *self.size_px)
                 scale = PX_MM * fit(view, self.size_px, "").scale
-            width = units.length(style["stroke-width"], units.diagonal) or 0.0
+            width = style.length(style["stroke-width"], style.diagonal) or 0.0
             color = self._color(element, place, "stroke")
-            stroke = color and stroke_of(color, width * scale, dashes_of(style, scale, units), note)
+            stroke = color and stroke_of(color, width * scale, dashes_of(style, scale), note)
         return fill, {"stroke": stroke} if stroke else {}
 
     def _color(self, element: Element, place: _Place, what: str) -> Color | None:
@@ -632,7 +629,7 @@ class SvgDrawing:
             element = self._ids.get(link_of(element)[1:], element)
         colors: set[Color] = set()
         for stop in stops:
-            style = self._sheets.of(stop, INITIAL, self._units)
+            style = self._sheets.of(stop, self._initial)
             color = color_of(style["stop-color"]) or BLACK
             colors.add(color._replace(alpha=color.alpha * share_of(style["stop-opacity"])))
         plain = len(colors) == 1 or all(color.alpha <= LEAST_SHARE for color in colors)
@@ -665,7 +662,7 @@ class SvgDrawing:
         """Patterns of outlines, the lowest first."""
         whole = place.clip is None
         if whole and name in ("circle", "ellipse"):
-            middle, (rx, ry) = outlines.round_of(element, place.style, place.units)
+            middle, (rx, ry) = outlines.round_of(element, place.style)
             radius = rx * place.matrix.scale
             if rx == ry and place.matrix.keeps_circles and LEAST_MM <= radius <= 10_000.0:
                 (center,) = outlines.in_mm(outlines.ring_of([place.matrix(middle)]))
@@ -717,8 +714,8 @@ class SvgDrawing:
         if target is None or name_of(target) != "clipPath" or target in self._used or box is None:
             self.note(element, f"its clip-path {short(written, 40)} is ignored")
             return place
-        around = self._style_around(target)
-        style = self._sheets.of(target, around, place.units)
+        around = changed(self._style_around(target), view=place.style.view)
+        style = self._sheets.of(target, around)
         matrix = place.matrix @ affine(box[2], 0.0, 0.0, box[3], box[0], box[1])
         rings: list[Ring] = []
         inner = changed(place, matrix=matrix, style=style, cutting=rings, clip=None, named=False)
@@ -738,9 +735,9 @@ class SvgDrawing:
 
     def _style_around(self, element: Element) -> Style:
         """Style of the elements around one that is used from elsewhere."""
-        style = INITIAL
+        style = self._initial
         for one in reversed(list(element.iterancestors())):
-            style = self._sheets.of(one, style, self._units)
+            style = self._sheets.of(one, style)
         return style
 
     def _markers(self, segments: Any, place: _Place) -> list[AnyPattern]:
@@ -767,19 +764,19 @@ class SvgDrawing:
         self, marker: Element, corners: list[outlines.Corner], place: _Place, turn: float
     ) -> list[AnyPattern]:
         """Patterns of a marker at vertices; ``turn`` is what auto-start-reverse adds there."""
-        units = place.units
-        size = units.place(marker.get("markerWidth", "3"), marker.get("markerHeight", "3"))
-        unit = units.length(place.style["stroke-width"], units.diagonal) or 0.0
+        around = place.style
+        size = around.place(marker.get("markerWidth", "3"), marker.get("markerHeight", "3"))
+        unit = around.length(around["stroke-width"], around.diagonal) or 0.0
         if marker.get("markerUnits") == "userSpaceOnUse":
             unit = 1.0
-        style = self._sheets.of(marker, self._style_around(marker), self._units)
+        style = self._sheets.of(marker, self._style_around(marker))
         faint = share_of(style["opacity"]) <= LEAST_SHARE
         if min(size.real, size.imag, unit) <= 0 or faint or marker in self._used:
             return []
         box = (size.real, size.imag)
         view = view_box_of(marker.get("viewBox")) or (0.0, 0.0, *box)
         fitted = fit(view, box, marker.get("preserveAspectRatio") or "")
-        middle = fitted(units.place(marker.get("refX"), marker.get("refY")))
+        middle = fitted(around.place(marker.get("refX"), marker.get("refY")))
         orient = (marker.get("orient") or "0").strip()
         inner = changed(place, style=style, context=place, named=False, depth=place.depth + 1)
         found: list[AnyPattern] = []
@@ -801,17 +798,17 @@ class SvgDrawing:
         written = place.style["transform"]
         if written == "none":
             return AffineMap()
-        box: Box = (0.0, 0.0, *place.units.view)
+        box: Box = (0.0, 0.0, *place.style.view)
         if place.style["transform-box"] in _OWN_BOXES:
             own = self._box(element, name, place)
             if own is None:
                 self.note(element, "its transform-box is ignored; only shapes have one")
             box = own or box
-        matrix = transform_of(written, place.units, box)
+        matrix = transform_of(written, place.style, box)
         if matrix is None:
             self.note(element, "its transform is not understood; it is drawn without")
             return AffineMap()
-        origin = origin_of(place.style["transform-origin"], place.units, box)
+        origin = origin_of(place.style["transform-origin"], place.style, box)
         if origin is None:
             self.note(element, "its transform-origin is not understood; it is ignored")
         return about(origin or 0j, matrix)
@@ -820,7 +817,7 @@ class SvgDrawing:
         """Box around a shape, in its own units; None for others than shapes."""
         if name not in SHAPES:
             return None
-        segments, _ = outlines.segments_of(outlines.path_of(element, place.style, place.units))
+        segments, _ = outlines.segments_of(outlines.path_of(element, place.style))
         if not len(segments):
             return None
         left, top, right, bottom = segments.boundingbox()
