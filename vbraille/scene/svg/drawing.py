@@ -365,13 +365,13 @@ class SvgDrawing:
         for word in _UNFELT:
             if style[word] != "none":
                 self.note(element, f"its {word} is ignored")
-        place = changed(place, matrix=place.matrix @ self._matrix(element, name, place))
+        place = changed(place, matrix=place.matrix @ self._matrix(element, place))
         if place.matrix.scale == 0.0:
             return []  # it is drawn as nothing
         if not place.matrix.scale < _MOST_SCALE:
             self.note(element, f"{TOO_FAR}; it is left out")
             return []
-        place = self._clipped(element, name, place)
+        place = self._clipped(element, place)
         if place.clip == []:
             return []
         title, description = title_of(element), description_of(element)
@@ -380,7 +380,7 @@ class SvgDrawing:
             self.note(element, "another element has the same id, so it is left without")
             own_id = ""
         kept = bool(title or description or own_id) and place.groups < _MOST_NESTED
-        found = self._made(element, name, changed(place, groups=place.groups + kept), sizes)
+        found = self._made(element, changed(place, groups=place.groups + kept), sizes)
         if not found or not kept:
             return found
         self._named.add(own_id)
@@ -391,9 +391,10 @@ class SvgDrawing:
         return self._lined(element, [words])
 
     def _made(
-        self, element: Element, name: str, place: _Place, sizes: tuple[str | None, ...]
+        self, element: Element, place: _Place, sizes: tuple[str | None, ...]
     ) -> list[AnyPattern]:
         """Patterns of an element that is shown, without its title, description and id."""
+        name = name_of(element)
         if name == "use":
             return self._of_use(element, place)
         if name in ("svg", "symbol"):
@@ -405,7 +406,7 @@ class SvgDrawing:
         try:
             if name == "text":
                 return self._of_text(element, place)
-            return self._of_shape(element, name, place)
+            return self._of_shape(element, place)
         except ValueError as error:
             self.note(element, f"{error}; it is left out")
             return []
@@ -525,7 +526,7 @@ class SvgDrawing:
             element, changed(place, matrix=place.matrix @ start), (size[0], size[1])
         )
 
-    def _of_shape(self, element: Element, name: str, place: _Place) -> list[AnyPattern]:
+    def _of_shape(self, element: Element, place: _Place) -> list[AnyPattern]:
         """Patterns of a shape and of its markers, the lowest first."""
         path = outlines.path_of(element, place.style)
         segments, whole = outlines.segments_of(path)
@@ -539,13 +540,13 @@ class SvgDrawing:
         if place.cutting is not None:
             place.cutting.extend(self._areas(element, contours, place, "clip-rule"))
             return []
-        fill, lines = self._look_of_shape(element, name, place)
+        fill, lines = self._look_of_shape(element, place)
         width = lines["stroke"].width_mm if lines.get("stroke") else 0.0
         if place.clip and contours and outlines.is_within(contours, width / 2, place.clip):
             place = changed(place, clip=None)
         patterns: list[AnyPattern] = []
         if fill is not None or lines:
-            patterns = self._patterns(element, name, contours, place, fill, lines)
+            patterns = self._patterns(element, contours, place, fill, lines)
             if not patterns and place.clip is None and whole:
                 self.note(element, "it has no size, and is left out")
         if place.strength < 1.0:
@@ -560,17 +561,16 @@ class SvgDrawing:
                 f"{self._name} has more than {MOST_POINTS} places on its lines; simplify it"
             )
 
-    def _look_of_shape(
-        self, element: Element, name: str, place: _Place
-    ) -> tuple[Fill | None, dict[str, Any]]:
+    def _look_of_shape(self, element: Element, place: _Place) -> tuple[Fill | None, dict[str, Any]]:
         """Fill of a shape, and its stroke or its dots."""
         look, style = place.look or ClassLook(), place.style
 
         def note(remark: str) -> None:
             self.note(element, remark)
 
-        fill = None if name == "line" else look.fill
-        if fill is None and name != "line":
+        is_line = name_of(element) == "line"
+        fill = None if is_line else look.fill
+        if fill is None and not is_line:
             color = self._color(element, place, "fill")
             fill = color and fill_of(color, note)
         if look.dots is not None:
@@ -653,14 +653,13 @@ class SvgDrawing:
     def _patterns(
         self,
         element: Element,
-        name: str,
         contours: list[Contour],
         place: _Place,
         fill: Fill | None,
         lines: dict[str, Any],
     ) -> list[AnyPattern]:
         """Patterns of outlines, the lowest first."""
-        whole = place.clip is None
+        whole, name = place.clip is None, name_of(element)
         if whole and name in ("circle", "ellipse"):
             middle, (rx, ry) = outlines.round_of(element, place.style)
             radius = rx * place.matrix.scale
@@ -702,7 +701,7 @@ class SvgDrawing:
                 found.append(PathShape(contours_mm=parts, closed=closed, **lines))
         return found
 
-    def _clipped(self, element: Element, name: str, place: _Place) -> _Place:
+    def _clipped(self, element: Element, place: _Place) -> _Place:
         """Place of an element with its own clip-path."""
         written = place.style["clip-path"]
         if written == "none":
@@ -710,7 +709,7 @@ class SvgDrawing:
         target = self._ids.get(target_of(written))
         box: Box | None = (0.0, 0.0, 1.0, 1.0)
         if target is not None and target.get("clipPathUnits") == "objectBoundingBox":
-            box = self._box(element, name, place)
+            box = self._box(element, place)
         if target is None or name_of(target) != "clipPath" or target in self._used or box is None:
             self.note(element, f"its clip-path {short(written, 40)} is ignored")
             return place
@@ -719,9 +718,9 @@ class SvgDrawing:
         matrix = place.matrix @ affine(box[2], 0.0, 0.0, box[3], box[0], box[1])
         rings: list[Ring] = []
         inner = changed(place, matrix=matrix, style=style, cutting=rings, clip=None, named=False)
-        inner = changed(inner, matrix=matrix @ self._matrix(target, "clipPath", inner))
+        inner = changed(inner, matrix=matrix @ self._matrix(target, inner))
         self._used.append(target)
-        inner = self._clipped(target, "clipPath", inner)
+        inner = self._clipped(target, inner)
         for child in target:
             self._drawn(child, inner)
         self._used.pop()
@@ -793,14 +792,14 @@ class SvgDrawing:
         self._used.pop()
         return found
 
-    def _matrix(self, element: Element, name: str, place: _Place) -> AffineMap:
+    def _matrix(self, element: Element, place: _Place) -> AffineMap:
         """Map of an element's transform about its origin."""
         written = place.style["transform"]
         if written == "none":
             return AffineMap()
         box: Box = (0.0, 0.0, *place.style.view)
         if place.style["transform-box"] in _OWN_BOXES:
-            own = self._box(element, name, place)
+            own = self._box(element, place)
             if own is None:
                 self.note(element, "its transform-box is ignored; only shapes have one")
             box = own or box
@@ -813,9 +812,9 @@ class SvgDrawing:
             self.note(element, "its transform-origin is not understood; it is ignored")
         return about(origin or 0j, matrix)
 
-    def _box(self, element: Element, name: str, place: _Place) -> Box | None:
+    def _box(self, element: Element, place: _Place) -> Box | None:
         """Box around a shape, in its own units; None for others than shapes."""
-        if name not in SHAPES:
+        if name_of(element) not in SHAPES:
             return None
         segments, _ = outlines.segments_of(outlines.path_of(element, place.style))
         if not len(segments):
