@@ -66,11 +66,8 @@ class Markers:
             return
         code, words = KINDS[kind].byte, [kind]
         if trial is not None:
-            words.append(trial.name)
-            if stimulus:
-                words.append(f"stimulus {stimulus + 1}")
-            if len(self._codes) > 1:
-                words.append(f"condition {trial.condition}")
+            words += [trial.name, f"condition {trial.condition}"]
+            words += [f"stimulus {stimulus + 1}"] if stimulus else []
             if kind == "cue":
                 code = self._codes.get(trial.condition, code)
         try:
