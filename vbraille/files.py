@@ -160,25 +160,28 @@ def settings_path(given: str | None = None) -> Path:
     return user_config_path("vbraille") / "settings.toml"
 
 
-def read_text(path: str | Path, what: str, most_bytes: int = _MOST_TEXT_BYTES) -> str:
-    """Text of a file, without a byte-order mark.
+def read_bytes(path: str | Path, what: str, most_bytes: int) -> bytes:
+    """Content of a file.
 
     Parameters
     ----------
     path
         Path of the file.
     what
-        Noun for the file, such as "protocol".
+        Noun for the file, such as "picture".
     most_bytes
         Size of the largest file that is read.
 
     Raises
     ------
     InputError
-        If the file cannot be read, is far too large or is not UTF-8.
+        If it is not there, is no ordinary file, is too large, or cannot be read.
     """
+    path = Path(path)
     try:
-        with Path(path).open("rb") as file:
+        if path.exists() and not (path.is_file() or path.is_dir()):
+            raise InputError(f"{path} is no ordinary file; give one that is")
+        with path.open("rb") as file:
             content = file.read(most_bytes + 1)
     except FileNotFoundError:
         raise InputError(f"there is no file {path}; check the name") from None
@@ -189,6 +192,18 @@ def read_text(path: str | Path, what: str, most_bytes: int = _MOST_TEXT_BYTES) -
         raise InputError(f"{path} cannot be read: {reason}") from None
     if len(content) > most_bytes:
         raise InputError(f"{path} is too large for a {what}; at most {most_bytes / 1e6:g} MB")
+    return content
+
+
+def read_text(path: str | Path, what: str, most_bytes: int = _MOST_TEXT_BYTES) -> str:
+    """Text of a file, without a byte-order mark; see `read_bytes`.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is far too large or is not UTF-8.
+    """
+    content = read_bytes(path, what, most_bytes)
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -47,7 +47,7 @@ def test_a_file_is_replaced_only_if_that_is_asked_for(call, old, tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "message"),
-    [("no.gen", "does not exist"), (".", "give a .gen, .tx or .svg file")],
+    [("no.gen", "there is no file"), (".", "give a .gen, .tx or .svg file")],
 )
 def test_what_cannot_be_converted_leaves_nothing_behind(call, tmp_path, name, message):
     done = call("scene", "convert", tmp_path / name, "--out", tmp_path / "new.scene")

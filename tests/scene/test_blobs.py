@@ -101,7 +101,7 @@ BAD = {
         np.full((9, 9), 255),
         {"place_mm": (10_000.0, 0.0)},
     ),
-    "does not exist": (np.ones((9, 9)), {"file": "none.png"}),
+    "there is no file": (np.ones((9, 9)), {"file": "none.png"}),
 }
 
 

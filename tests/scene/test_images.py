@@ -154,7 +154,7 @@ def test_a_blur_is_a_gauss_in_millimetres_that_reaches_beyond_the_edges(tmp_path
         ({"width_mm": None}, "has no size; give width_mm or height_mm"),
         ({"width_mm": 10_000.0}, None),
         ({"channel": "alpha"}, "no alpha channel"),
-        ({"file": "none.png"}, "does not exist"),
+        ({"file": "none.png"}, "there is no file"),
         ({"file": "."}, "is a directory"),
         ({"width_mm": 2.0, "height_mm": 0.1, "blur_mm": 0.5}, "a blur of 0.5 mm"),
     ],
@@ -190,7 +190,7 @@ BAD = {
     "truncated JPEG": (lambda path: as_jpeg(path)[:-300], "damaged"),
     "another kind": (lambda path: as_jpeg(path, "TIFF"), "is no PNG"),
     "PostScript": (lambda path: as_jpeg(path, "EPS"), "is no PNG"),
-    "empty": (lambda _: b"", "is empty"),
+    "empty": (lambda _: b"", "is no PNG"),
     "scans": (lambda path: as_jpeg(path)[:-2] + b"\xff\xda\0\x08\1\1\0\0\x3f\0" * 200, "scans"),
 }
 
@@ -218,7 +218,7 @@ def test_the_place_of_the_element_is_said_where_it_is_known(tmp_path):
     saved(tmp_path / "a.png", [[0, 255]])
     good, bad = Image(file="a.png", width_mm=5), Image(file="none.png", width_mm=5)
     scene = Scene(canvas=CANVAS, elements=(good, Group(parts=(good, bad))))
-    with pytest.raises(InputError, match=r"^my\.scene line 9: image none.png: .* does not exist"):
+    with pytest.raises(InputError, match=r"^my\.scene line 9: image none.png: there is no file "):
         load_bitmaps(scene, tmp_path, ["my.scene line 5", "my.scene line 9"])
 
 

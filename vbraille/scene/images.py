@@ -20,8 +20,8 @@ import msgspec
 import numpy as np
 
 from vbraille.errors import InputError, needing_extras
+from vbraille.files import read_bytes
 from vbraille.scene.bitmap import WHOLE, Bitmap, pixel_size_mm
-from vbraille.scene.filebytes import read_bytes
 from vbraille.scene.patterns import Dots, Group, Image, Pattern
 from vbraille.scene.traversal import each
 
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from vbraille.scene.scene import Scene
 
 
-_MOST_FILE_BYTES = 100 << 20
+_MOST_FILE_BYTES = 100_000_000
 # What Pillow may take a file for, whatever its name ends with.
 KINDS = ("PNG", "GIF", "BMP", "JPEG")
 # More than the largest cameras have; a picture of four channels takes 240 MB then, for a moment.
@@ -71,7 +71,7 @@ class ImageFile:
 
     def __init__(self, path: Path) -> None:
         self._path, self.size_mm, self._drawing, self._image = path, None, None, None
-        content = read_bytes(path, _MOST_FILE_BYTES)
+        content = read_bytes(path, "picture", _MOST_FILE_BYTES)
         begins = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] == b"<"
         if begins or content[:2] in (b"\xff\xfe", b"\xfe\xff", b"\x1f\x8b"):
             from vbraille.scene.svg.raster import RasterDrawing  # loads lxml

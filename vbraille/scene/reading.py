@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
@@ -386,9 +386,6 @@ class _Reading:
         classes
             Looks of classes, if it is a drawing, by the file that includes it.
         """
-        there = str(path)  # whose functions, unlike a path's, take no permission for no
-        if os.path.exists(there) and not (os.path.isfile(there) or os.path.isdir(there)):  # noqa: PTH110, PTH112, PTH113
-            raise InputError(f"{path} is no ordinary file; give one that is")
         kind = form_of(path)
         if kind == "toml":
             return self.text(read_text(path, "scene", MOST_BYTES), path, way, folder, language)
@@ -497,11 +494,11 @@ def form_of(path: Path) -> str:
     form = _SUFFIXES.get(path.suffix.lower())
     if form is not None:
         return form
-    try:
-        with path.open("rb") as file:
-            head = file.read(_HEAD_BYTES)
-    except (OSError, ValueError):
-        return "toml"  # whose reader says what is wrong
+    head = b""
+    with suppress(OSError, ValueError):
+        if path.is_file():  # or else the reader of TOML says what is wrong
+            with path.open("rb") as file:
+                head = file.read(_HEAD_BYTES)
     if not head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<"):
         return "toml"
     return "svg" if b"<svg" in head or b":svg" in head else "gen"

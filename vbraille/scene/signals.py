@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
-from msgspec.structs import replace
-
 from vbraille.errors import check_range
 from vbraille.scene.measures import Angle, Measured, Share, limits
 
@@ -196,13 +194,6 @@ def made_of(signal: AnySignal) -> tuple[str, ...]:
     if isinstance(signal, Product):
         return signal.of
     return (signal.of,) if isinstance(signal, Inverse) else ()
-
-
-def renamed(signal: AnySignal, names: Mapping[str, str]) -> AnySignal:
-    """Signal made of others, which go by other names."""
-    if isinstance(signal, Product):
-        return replace(signal, of=tuple(names[name] for name in signal.of))
-    return replace(signal, of=names[signal.of]) if isinstance(signal, Inverse) else signal
 
 
 def ordered(signals: Mapping[str, AnySignal], driving: Iterable[str] = ()) -> list[OrderedSignal]:

@@ -184,20 +184,6 @@ def driving(*patterns: AnyPattern) -> list[str]:
     return [name for steps, name in used if steps[-1] == "velocity_by"]
 
 
-def with_signals(pattern: AnyPattern, names: Mapping[str, str]) -> AnyPattern:
-    """Pattern that uses signals under other names, as does all that stands in it."""
-
-    def renamed(table: Any) -> Any:
-        changes: dict[str, Any] = {key: names[name] for key, name in _driven(table).items()}
-        for key in _DRAWN:
-            inner = getattr(table, key, None)
-            if inner is not None:
-                changes[key] = renamed(inner)
-        return replace(table, **changes)
-
-    return with_children(renamed(pattern), lambda _, part: with_signals(part, names))
-
-
 def moved(pattern: AnyPattern, move_mm: Point) -> AnyPattern:
     """Pattern moved by value: all its places, and those of what stands in it, are changed.
 

@@ -32,7 +32,7 @@ LEFT_OUT = {
     ),
     "a picture that is not there": (
         f'<Pattern type="Image">{grating()}<mask><imgfile>no.png</imgfile></mask></Pattern>',
-        "no.png does not exist",
+        "there is no file no.png",
     ),
     "no ridges": (grating(ridge=0), "its ridges are 0 mm"),
     "no ridges in a double grating": (

@@ -23,11 +23,9 @@ _CELLS, _LINES = 40, 25  # of a page of paper, where nothing else is asked for
 _SHOWN = ("model", "travel", "geometry")  # what lays a book in braille out anew
 
 
-@click.command(
-    cls=options.Command, epilog="Example: vbraille page book.txt --format brf --out book.brf"
-)
-@options.file
-@options.takes(
+@options.command(
+    "page book.txt --format brf --out book.brf",
+    options.file,
     options.option("--format", type=click.Choice(["unicode", "brf", "pef", "dots", "text"]),
                    default="unicode", show_default=True, help="Form of the lines."),
     options.out, options.force,

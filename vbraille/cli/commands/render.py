@@ -14,12 +14,9 @@ from vbraille.cli.printing import Progress, say
 _SCENES = (".scene", ".svg", ".svgz", ".gen", ".tx")
 
 
-@click.command(
-    cls=options.Command,
-    epilog="Example: vbraille render book.txt --lines 1-3 --hand slow --out reading.h5",
-)
-@options.file
-@options.takes(
+@options.command(
+    "render book.txt --lines 1-3 --hand slow --out reading.h5",
+    options.file,
     options.out(required=True, metavar="FILE.h5", help="HDF5 file to write."),
     options.force,
     options.lines,

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.scene.filebytes import read_bytes
+from vbraille.files import read_bytes
 from vbraille.scene.locations import FoundScene
 from vbraille.scene.openlatero.elements import MOST_BYTES, Context, read_root
 from vbraille.scene.openlatero.making import SURFACE_MM, pattern_of
@@ -45,7 +45,7 @@ def read_gen(path: Path, *, as_shown: bool = False) -> FoundScene:
         If the file cannot be read, or is none of OpenLatero's.
     """
     context = Context(path.parent, as_shown)
-    root = read_root(read_bytes(path, MOST_BYTES), str(path), context)
+    root = read_root(read_bytes(path, "scene", MOST_BYTES), str(path), context)
     part = root.Generator.Pattern if root.Generator.there else root.Pattern
     if root.Generator.there and not part.there:
         root.Generator.say("it holds no Pattern, so the scene is empty")

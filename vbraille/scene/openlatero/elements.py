@@ -435,9 +435,9 @@ class Element:
         if kind == "yesno":
             return leaf.yes_no(usual)
         if kind == "words":
-            words = dict(word.strip().partition("=")[::2] for word in row.usual.split("|"))
-            known = leaf.word(leaf.text, words, next(iter(words)))
-            return words[known] or known
+            pairs = (word.strip().partition("=") for word in row.usual.split("|"))
+            words = {theirs: ours or theirs for theirs, _, ours in pairs}
+            return words[leaf.word(leaf.text, words, next(iter(words)))]
         if kind == "place":
             x, y = map(float, usual.split(","))
             return leaf.place((x, y))

@@ -640,9 +640,10 @@ def _fill(element: Element, look: dict[str, Any]) -> Fill | None:
             element.say("dots stand in the place of the fill there, and are blended into it here")
         return Fill(texture=texture, blended=True)
     cue, stroke = look.get("cue"), look.get("stroke")
-    weakens = stroke and cue and cue.way == "add" and stroke.width_mm >= cue.width_mm
-    if element.context.as_shown and weakens:
-        texture = Group(operation="maximum", parts=(texture,), amplitude=1.0 - cue.share)
+    weakens = cue and stroke and cue.way == "add" and stroke.width_mm >= cue.width_mm
+    share = cue.share if cue and weakens else 0.0
+    if element.context.as_shown and share:
+        texture = Group(operation="maximum", parts=(texture,), amplitude=1.0 - share)
     return Fill(**element.here, texture=texture, gap_mm=element.gap)
 
 

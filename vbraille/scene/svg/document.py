@@ -15,7 +15,7 @@ import tinycss2
 from tinycss2.color5 import parse_color
 
 from vbraille.errors import InputError
-from vbraille.scene.filebytes import read_bytes
+from vbraille.files import read_bytes
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 SVG = "{http://www.w3.org/2000/svg}"
 INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}"
 _XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
-MOST_BYTES = 50 << 20
+MOST_BYTES = 50_000_000
 MOST_ELEMENTS = 50_000
 _LONGEST_NAME, LONGEST_TEXT = 200, 2000
 # Ids that programs give by themselves say nothing, and are the same in many drawings.
@@ -57,7 +57,7 @@ def read_tree(path: Path) -> Element:
     """
     from lxml import etree
 
-    content = read_bytes(path, MOST_BYTES)
+    content = read_bytes(path, "drawing", MOST_BYTES)
     if content.startswith(b"\x1f\x8b"):
         raise InputError(f"{path} is a compressed SVG; save it as a plain one")
     too_many = f"{path} has more than {MOST_ELEMENTS} elements; draw it with fewer"
