@@ -184,24 +184,8 @@ def _take_pose(now, window, velocities, device_ns, pose):
 
 
 @_compiled
-def _wanted(now, taking, numbers):
-    """Serial number of the picture that belongs under the hand now; 0 is rest."""
-    if now["paused"] or now["placed"] == 0 or not taking or now["turned"]:
-        return 0
-    if now["time_ns"] - now["sampled_ns"] > SILENCE_NS:
-        return 0
-    # A picture that moves by itself is felt without moving the hand, though not without end.
-    still_ns = now["time_ns"] - now["moved_ns"]
-    if numbers[work.FREQUENCY] == 0.0 and still_ns > IDLE_NS:
-        return 0
-    if still_ns > patience(numbers) * NS_PER_S:
-        return 0
-    return now["serial"]
-
-
-@_compiled
 def _decide(now, y_mm, rested, taking, numbers):
-    """Decide what is shown in this tick, and how far it has faded in."""
+    """Decide what is shown in this tick, how far it has faded in, and what is remarked on it."""
     if rested != now["rested"]:
         now["rested"] = rested
         now["flags"] |= _RESTED
@@ -211,7 +195,14 @@ def _decide(now, y_mm, rested, taking, numbers):
         now["faded_ns"] = now["fading_ns"]
     turned = now["placed"] != 0 and too_far(numbers, now["theta_rad"], now["turned"] != 0)
     now["turned"] = 1 if turned else 0
-    wanted = _wanted(now, taking, numbers)
+    silent = now["time_ns"] - now["sampled_ns"] > SILENCE_NS
+    away = now["placed"] == 0 or turned or not taking or silent
+    # A picture that moves by itself is felt without moving the hand, though not without end.
+    still_ns = now["time_ns"] - now["moved_ns"]
+    idle = still_ns > patience(numbers) * NS_PER_S
+    idle = idle or (numbers[work.FREQUENCY] == 0.0 and still_ns > IDLE_NS)
+    # Serial number of the picture that belongs under the hand now; 0 is rest.
+    wanted = 0 if now["paused"] or away or idle else now["serial"]
     # A finger at the edge of its line stays on it over a rest, and when the page comes in another
     # style, too.
     part = part_of(numbers, y_mm, now["part"])
@@ -226,19 +217,13 @@ def _decide(now, y_mm, rested, taking, numbers):
     now["part"] = part
     fading = now["faded_ns"] < now["fading_ns"]
     now["share"] = now["faded_ns"] / now["fading_ns"] if fading else 1.0
-
-
-@_compiled
-def _remark(now, taking):
-    """Set the flags that say what a tick was like."""
-    silent = now["time_ns"] - now["sampled_ns"] > SILENCE_NS
-    away = now["placed"] == 0 or now["turned"] or not taking or silent or now["flags"] & _RESTED
-    unfelt = now["serial"] != 0 and not now["paused"] and away
+    unfelt = now["serial"] != 0 and not now["paused"] and (away or now["flags"] & _RESTED)
     now["flags"] |= (
-        _PAUSED * (now["paused"] != 0)
+        _RESTING * (wanted == 0)
+        + _PAUSED * (now["paused"] != 0)
         + _SILENT * silent
         + _HELD * (not taking)
-        + _TURNED * now["turned"]
+        + _TURNED * turned
         + _UNFELT * (unfelt != 0)
     )
 
@@ -338,8 +323,6 @@ def advance(
         placed = now["placed"] != 0
         y_mm = now["own_y_mm"] if placed and now["free_y"] != 0 else numbers[work.OWN_Y]
         _decide(now, y_mm, rested, taking, numbers)
-        if now["shown"] == 0:
-            now["flags"] |= _RESTING
         now["shown_s"] = now["shown_ns"] / NS_PER_S
         if placed:
             now["y_mm"] = y_mm
@@ -351,7 +334,6 @@ def advance(
             output[:] = 0.0
         flags, share, part = now["flags"], now["share"], now["part"]
         _show(flags, share, part, numbers, table, scratch, at, output, held, target)
-        _remark(now, taking)
         slot = (first + n) % ints.shape[0]
         for k in range(own_ints.shape[0]):
             ints[slot, k] = own_ints[k]
