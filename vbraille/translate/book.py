@@ -104,17 +104,13 @@ class Book:
 
     def _find_table(self, language: str) -> BrailleTable:
         """Table of a passage's language; the book's own if that is its language, or it has none."""
-        own = self.table
+        own, found = self.table, None
         assert own is not None
-        tags = [tag for tag in (self.language, self.source.language) if tag]
-        tags = tags or [own.info.language or own.name.partition("-")[0]]
-        usual = _table_of(language)
-        ours = [table.name for table in (own, *map(_table_of, tags)) if table]
-        if usual is None or not self.switch or usual.name in ours:
+        tags = (self.language, self.source.language, own.info.language or own.name)
+        if self.switch and _primary(language) not in ("", *map(_primary, tags)):
+            found = _table_of(language, self.grade) or _table_of(language)
+        if found is None or found.name == own.name or found.eight_dots > own.eight_dots:
             return own
-        found = _table_of(language, self.grade) or usual
-        if found.eight_dots and not own.eight_dots:
-            found = own if usual.eight_dots else usual
         found.undefined = own.undefined
         return found
 
@@ -136,7 +132,7 @@ def _between_signs(own: BrailleTable, part: Written, tag: str, following: str) -
     if not words:
         return part
     first, end = words[0][0], words[-1][1]
-    language = re.split("[-_]", tag.strip().lower())[0]
+    language = _primary(tag)
     if not own.is_ueb:
         opening, closing = next(filter(own.cells_of, ("[]", "()")), "⠿⠿")
         before, after = own.write(f"{opening}{language}:"), own.write(closing)
@@ -208,6 +204,11 @@ def _characters(found: Counter[str]) -> str:
     if others := found.total() - sum(number for _, number in most):
         named.append(f"{others} of others")
     return f"{count(found.total(), 'character')} ({', '.join(named)})"
+
+
+def _primary(tag: str) -> str:
+    """Language of a tag, without its region."""
+    return re.split("[-_]", tag.strip().lower())[0]
 
 
 def _table_of(language: str, grade: int | None = None) -> BrailleTable | None:
