@@ -24,12 +24,7 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 _REMEMBERED = 64  # blocks
-# Unified English Braille's indicators for code switching (Rules of UEB, 14.3): of a word and of its
-# end, and of a passage, whose opening has the language's letters between its cells.
-_UEB_WORD, _UEB_WORD_END, _UEB_OPENING, _UEB_OPENED, _UEB_CLOSING = (
-    Cells.from_unicode(sign).masks.tobytes() for sign in ("⠘⠷", "⠘⠾", "⠐⠷", "⠄", "⠠⠐⠾")
-)
-_UEB_WORDS = 2  # at most, each with its own
+_UEB_WORDS = 2  # at most, each with its own sign
 
 
 class Book:
@@ -135,19 +130,21 @@ def _between_signs(own: BrailleTable, part: Written, tag: str, following: str) -
     language = _primary(tag)
     if not own.is_ueb:
         opening, closing = next(filter(own.cells_of, ("[]", "()")), "⠿⠿")
-        before, after = own.write(f"{opening}{language}:"), own.write(closing)
-        signs = [(first, before.masks), (end, after.masks)]
+        signs = [(first, f"{opening}{language}:"), (end, closing)]
+    # Unified English Braille's indicators for code switching (Rules of UEB, 14.3): of a passage,
+    # whose opening has the language's letters between its cells; of a word and of its end.
     elif len(words) > _UEB_WORDS:
-        letters = Cells.from_brf(language).masks.tobytes()
-        signs = [(first, _UEB_OPENING + letters + _UEB_OPENED), (end, _UEB_CLOSING)]
+        letters = Cells.from_brf(language).to_unicode()
+        signs = [(first, f"⠐⠷{letters}⠄"), (end, "⠠⠐⠾")]
     else:
-        signs = [(start, _UEB_WORD) for start, _ in words]
+        signs = [(start, "⠘⠷") for start, _ in words]
         if following.strip() and part.masks[-1]:
-            signs.append((end, _UEB_WORD_END))
+            signs.append((end, "⠘⠾"))
     for cell, sign in reversed(signs):
-        part.masks = part.masks[:cell] + sign + part.masks[cell:]
+        masks = own.write(sign).masks
+        part.masks = part.masks[:cell] + masks + part.masks[cell:]
         place = part.places[min(cell, len(part.places) - 1)]
-        part.places[cell:cell] = [place] * len(sign)
+        part.places[cell:cell] = [place] * len(masks)
     return part
 
 
