@@ -10,10 +10,9 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from vbraille.braille.cells import Cells
-from vbraille.errors import InputError
 from vbraille.translate.blocks import MarkKind, cut_marks
 from vbraille.translate.spellings import Kind, Undefined
-from vbraille.translate.tables import BrailleTable, find_table
+from vbraille.translate.tables import BrailleTable, table_of
 from vbraille.translate.undefined import Written
 from vbraille.wording import count, setting
 
@@ -103,7 +102,7 @@ class Book:
         assert own is not None
         tags = (self.language, self.source.language, own.info.language or own.name)
         if self.switch and _primary(language) not in ("", *map(_primary, tags)):
-            found = _table_of(language, self.grade) or _table_of(language)
+            found = table_of(language, self.grade) or table_of(language)
         if found is None or found.name == own.name or found.eight_dots > own.eight_dots:
             return own
         found.undefined = own.undefined
@@ -161,8 +160,7 @@ def remarks(book: Book, blocks: Iterable[Block]) -> list[str]:
     unshown: Counter[str] = Counter()
     written: dict[Kind, Counter[str]] = {kind: Counter() for kind in Kind}
     for block in blocks:
-        things = [mark.target for mark in block.marks if mark.kind is MarkKind.UNSHOWN]
-        unshown.update(thing or "other thing" for thing in things)
+        unshown.update(mark.target for mark in block.marks if mark.kind is MarkKind.UNSHOWN)
         for (kind, part), number in book.otherwise.get(block.number, {}).items():
             written[kind][part] += number
     table, said = book.table, []
@@ -206,10 +204,3 @@ def _characters(found: Counter[str]) -> str:
 def _primary(tag: str) -> str:
     """Language of a tag, without its region."""
     return re.split("[-_]", tag.strip().lower())[0]
-
-
-def _table_of(language: str, grade: int | None = None) -> BrailleTable | None:
-    try:
-        return BrailleTable(find_table(language, grade))
-    except InputError:
-        return None
