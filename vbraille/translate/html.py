@@ -12,7 +12,7 @@ from vbraille.translate.blocks import Block, BlockKind, Mark, MarkKind, cut_mark
 from vbraille.translate.encodings import tidy
 from vbraille.translate.formulas import formula_text
 from vbraille.translate.grids import EMPHASES, joined, table_blocks
-from vbraille.translate.numbering import BULLET, list_markers, whole
+from vbraille.translate.numbering import BULLET, Numbering, html_list, whole
 from vbraille.translate.spellings import LOWERED, RAISED, small
 from vbraille.translate.trees import Element, inside, names, read_tree
 
@@ -64,7 +64,7 @@ class _Role(NamedTuple):
     notes: bool = False  # items of lists are notes here
     refers: bool = False  # a link is a reference to a note
     lines: bool = False  # white space is kept
-    marker: Callable[[Element], str] = lambda _: BULLET  # what stands before an item
+    numbering: Numbering = Numbering()
 
 
 class Walker:
@@ -282,8 +282,8 @@ class Walker:
                 self._become(BlockKind.HEADING, max(role.sections, 1))
             case "ul" | "ol" | "list" | "menu" | "dl":
                 group = role.group if role.items else next(self._groups)
-                marker = list_markers(element)
-                self._become(items=role.items + 1, group=group, marker=marker)
+                numbering = html_list(element)
+                self._become(items=role.items + 1, group=group, numbering=numbering)
             case "li":
                 self._item(element)
                 return
@@ -329,7 +329,8 @@ class Walker:
         self._add(after)
 
     def _item(self, element: Element) -> None:
-        lead = element.get("data-marker", self._role.marker(element))
+        marker = self._role.numbering.marker(said=element.get("value"))
+        lead = element.get("data-marker", marker)
         self._lead = self._lead + lead if self._lead not in ("", BULLET) else lead
         if self._role.notes or self._role.kind is BlockKind.NOTE:
             self._become(BlockKind.NOTE, notes=False)
