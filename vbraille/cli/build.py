@@ -203,7 +203,8 @@ class Page:
         """Lines that are wanted; notes on the text are printed on standard error."""
         for line in self.layout.lines(self.first, self.last):
             self._given += 1
-            self.say_notes()
+            for note in self.layout.book.source.notes():
+                say(note, aside=True)
             if line.block not in self._seen[-1:]:
                 self._seen.append(line.block)
             yield line
@@ -214,13 +215,7 @@ class Page:
             return self.layout.progress(line)
         return self._given / (self.last - self.first + 1)
 
-    def say_notes(self) -> None:
-        """Print notes on the text that are new."""
-        for note in self.layout.book.source.notes():
-            say(note, aside=True)
-
-    def say_end(self) -> None:
-        """Print notes, and what of the lines was not shown."""
-        self.say_notes()
-        for sentence in remarks(self.layout.book, self._seen):
-            say(sentence, aside=True)
+    def remarks(self) -> Iterator[str]:
+        """Notes on the text that are new, and sentences on what of the lines was not shown."""
+        yield from self.layout.book.source.notes()
+        yield from remarks(self.layout.book, self._seen)
