@@ -15,7 +15,7 @@ from vbraille.cli.printing import print_json, say
     options.keys,
     options.option(
         "--of",
-        type=click.Choice(["book", "picture", "game", "tuning"]),
+        type=click.Choice(["book", "picture", "game", "tuning", "screen"]),
         default="book",
         show_default=True,
         help="What the keys are for.",
