@@ -72,7 +72,7 @@ class TestSpell:
     def test_dot_numbers_that_run_together(self):
         with pytest.raises(ValueError, match=r"^'44' has a dot twice; put a space between"):
             spell("44", {})
-        with pytest.raises(ValueError, match=r"^'a4' is no cell; put spaces around dot numbers$"):
+        with pytest.raises(ValueError, match=r"^'4' is no cell; .* between spaces$"):
             spell("a4", {})
 
 

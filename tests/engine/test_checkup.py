@@ -6,7 +6,7 @@ from tests.engine.wire import wired
 from vbraille.devices.base import Device
 from vbraille.devices.events import Placing
 from vbraille.display import Display, Pose
-from vbraille.engine.checkup import Checkup
+from vbraille.engine.checkup import Checkup, Watch
 from vbraille.engine.clock import ManualClock
 
 SMALL = Display("small", 1, 2, 1.0, 1.0, levels=256, travel_mm=100.0)
@@ -95,3 +95,15 @@ def test_a_driver_that_leaves_a_message_cut_is_told_of():
         clock = ManualClock()
         found = done(Cutting(clock), clock)
         assert any("does not finish a message" in wrong for wrong in found.wrong)
+
+
+@pytest.mark.parametrize(("device_ms", "jumps"), [(28, False), (1, True)])
+def test_poses_that_the_line_held_back_are_no_jump(device_ms, jumps):
+    clock = ManualClock()
+    device = Driver(clock)
+    watch = Watch(device, clock)
+    for pose in (Pose(0, 0.0), Pose(device_ms * 1_000_000, 7.0)):
+        device.read = lambda pose=pose: pose
+        watch.read()
+        clock.advance_ns(1_300_000)
+    assert any("jumps" in fault for fault in watch.faults()) == jumps

@@ -198,7 +198,7 @@ def _cells(text: str, keys: dict[str, int]) -> list[tuple[str, int]]:
         if _DOT_NUMBERS.fullmatch(word):
             cells.append((word, _by_dots(word)))
         else:
-            cells += [(character, _by_character(character, word, keys)) for character in word]
+            cells += [(character, _by_character(character, keys)) for character in word]
     return cells
 
 
@@ -211,17 +211,15 @@ def _by_dots(word: str) -> int:
     return int(Cells.from_dots(word).masks[0])
 
 
-def _by_character(character: str, word: str, keys: dict[str, int]) -> int:
+def _by_character(character: str, keys: dict[str, int]) -> int:
     mask = keys.get(character, LETTERS.get(character))
     if mask is not None:
         return mask
     if UNICODE_BLANK <= ord(character) <= UNICODE_BLANK + 0xFF:
         return ord(character) - UNICODE_BLANK
-    if _DOT_NUMBERS.fullmatch(character):
-        raise ValueError(f"{_shorten(word)} is no cell; put spaces around dot numbers")
     raise ValueError(
-        f"{_shorten(character)} is no cell; a cell is a letter a to z, a key of the protocol, "
-        f"a Unicode braille character or dot numbers such as 1-4"
+        f"{character!r} is no cell; a cell is a letter a to z, a key of the protocol, a Unicode "
+        f"braille character or dot numbers such as 1-4 between spaces"
     )
 
 

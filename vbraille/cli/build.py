@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.geometry import PRESETS
 from vbraille.cli.printing import say
-from vbraille.cli.settings import given, style_options
+from vbraille.cli.settings import given, save_profile, settings_of, style_options
 from vbraille.errors import InputError
-from vbraille.knobs import KNOBS
+from vbraille.knobs import KNOBS, profile_values
 from vbraille.layout import Layout, cells_per_line
 from vbraille.render import MAPPINGS, single_row
 from vbraille.translate import Book, choose_table, has_tables, open_source, remarks
+from vbraille.wording import count
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -23,12 +24,13 @@ if TYPE_CHECKING:
 
     from vbraille.layout import Line
     from vbraille.render import Model
+    from vbraille.render.braille.style import BrailleStyle
     from vbraille.translate import Block, Source
 
 _OF_TABLE = ("language", "grade", "table")
 
 
-def build_book(ctx: click.Context, file: str | None = None) -> Book:
+def build_book(ctx: click.Context) -> Book:
     """Open a text, with the table that translates it.
 
     The table is that of the options that were given, or else of the text's own language, or else of
@@ -37,9 +39,7 @@ def build_book(ctx: click.Context, file: str | None = None) -> Book:
     Parameters
     ----------
     ctx
-        Context of a command with `options.TRANSLATION`.
-    file
-        Path of the text, or "-" for standard input; None for the option's.
+        Context of a command with a file and `options.TRANSLATION`.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def build_book(ctx: click.Context, file: str | None = None) -> Book:
         If the text or the table cannot be used.
     """
     chosen, asked = ctx.params, given(ctx)
-    source = open_text(chosen, file, wishes=frozenset({"encoding", "keep_lines"} - asked))
+    source = open_text(chosen, wishes={"encoding", "keep_lines"} - asked)
     if source.in_cells:
         if wrong := asked & {*_OF_TABLE}:
             raise InputError(f"{source.name} is in braille already; leave out --{min(wrong)}")
@@ -58,24 +58,23 @@ def build_book(ctx: click.Context, file: str | None = None) -> Book:
     return Book(source, made, language=language or "", grade=grade, switch=switch)
 
 
-def open_text(
-    chosen: dict[str, Any], file: str | None = None, *, wishes: Collection[str]
-) -> Source:
+def open_text(chosen: dict[str, Any], wishes: Collection[str] = ()) -> Source:
     """Open a text by options on it, of which `wishes` are passed over where they do not fit.
+
+    The file "-" is standard input.
 
     Raises
     ------
     InputError
         If it cannot be read.
     """
-    file = file or str(chosen["file"])
     names = ("encoding", "keep_lines", "brf_table", "form")
-    how = {name: chosen[name] for name in names}
-    if file != "-":
-        return open_source(file, wishes=wishes, **how)
+    how: dict[str, Any] = {"wishes": wishes} | {name: chosen[name] for name in names}
+    if chosen["file"] != "-":
+        return open_source(chosen["file"], **how)
     if sys.stdin.isatty():
         say("type the text; Ctrl-D on an empty line ends it", aside=True)
-    return open_source(sys.stdin.buffer, name="standard input", wishes=wishes, **how)
+    return open_source(sys.stdin.buffer, name="standard input", **how)
 
 
 def table_options(ctx: click.Context, own: str = "") -> tuple[str | None, int | None, str | None]:
@@ -137,16 +136,34 @@ def build_model(ctx: click.Context, model: Model, travel_mm: float | None = None
     display = model.display
     if chosen.get("height") is not None:
         display = replace(display, height_mm=chosen["height"])
+    strayed = {"manner": chosen.get("straying"), "band": chosen.get("band")}
+    strayed = {name: value for name, value in strayed.items() if value is not None}
     try:
-        straying = style.straying
-        for name, field in (("straying", "manner"), ("band", "band")):
-            if chosen.get(name) is not None:
-                straying = replace(straying, **{field: chosen[name]})
-        style = style.replace(**changes, straying=straying)
+        style = style.replace(**changes, straying=replace(style.straying, **strayed))
         style.rows_on(display)
     except ValueError as error:
         raise InputError(str(error)) from None
     return replace(model, display=display, style=style)
+
+
+def save_style(ctx: click.Context, model: Model, style: BrailleStyle) -> str:
+    """Save a style in the profile, for one display; the sentence that says so.
+
+    Raises
+    ------
+    VbrailleError
+        If it cannot be saved.
+    """
+    settings = settings_of(ctx)
+    name = display_name(model)
+    save_profile(settings.path, settings.profile, name, profile_values(style))
+    return f"profile {settings.profile}: saved"
+
+
+def say_width(width: int, book: Book) -> None:
+    """Print how many cells are in a line, and how the text is written."""
+    written = "braille as it is" if book.table is None else book.table.said
+    say(f"line width: {count(width, 'cell')}, {written}", aside=True)
 
 
 class Page:
@@ -180,15 +197,14 @@ class Page:
             if not lines:
                 raise InputError(f"{name} has no text")
             raise InputError(f"{name} has {lines} lines; --lines {self.first} is past the end")
-        written = "braille as it is" if book.table is None else book.table.said
-        cells = "1 cell" if width == 1 else f"{width} cells"
-        say(f"line width: {cells}, {written}", aside=True)
+        say_width(width, book)
 
     def lines(self) -> Iterator[Line]:
         """Lines that are wanted; notes on the text are printed on standard error."""
         for line in self.layout.lines(self.first, self.last):
             self._given += 1
-            self.say_notes()
+            for note in self.layout.book.source.notes():
+                say(note, aside=True)
             if line.block not in self._seen[-1:]:
                 self._seen.append(line.block)
             yield line
@@ -199,13 +215,7 @@ class Page:
             return self.layout.progress(line)
         return self._given / (self.last - self.first + 1)
 
-    def say_notes(self) -> None:
-        """Print notes on the text that are new."""
-        for note in self.layout.book.source.notes():
-            say(note, aside=True)
-
-    def say_end(self) -> None:
-        """Print notes, and what of the lines was not shown."""
-        self.say_notes()
-        for sentence in remarks(self.layout.book, self._seen):
-            say(sentence, aside=True)
+    def remarks(self) -> Iterator[str]:
+        """Notes on the text that are new, and sentences on what of the lines was not shown."""
+        yield from self.layout.book.source.notes()
+        yield from remarks(self.layout.book, self._seen)

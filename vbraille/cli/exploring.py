@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
@@ -37,6 +38,10 @@ class Equipment:
 
     Parameters
     ----------
+    ctx
+        Context of a command with the options of device and output.
+    stack
+        What is closed once the device is.
     device
         The device, which is not driven yet.
     keyboard
@@ -45,60 +50,82 @@ class Equipment:
         Where sentences go, the console first.
     sources
         Where keys come from beside the terminal.
-    stack
-        What is closed once the device is.
     """
 
+    ctx: click.Context
+    stack: ExitStack
     device: ReadingDevice
     keyboard: Keyboard
     outputs: list[Any]
     sources: list[Any]
-    stack: ExitStack
-
-    @property
-    def signals(self) -> Any:
-        """Output that plays cues and sounds; None if none does."""
-        return next((each for each in self.outputs if hasattr(each, "sound")), None)
 
     def say(self, sentence: str) -> None:
         """Say a sentence on every output."""
         for output in self.outputs:
             output.say(sentence)
 
-    def start(
-        self, ctx: click.Context, model: Model, *, language: str = "en", table: Any = None
-    ) -> None:
+    def add(self, output: Any, *, keys: bool = False) -> None:
+        """Add an output, whose keys are taken, too, if it has some."""
+        self.stack.callback(output.close)
+        self.outputs.append(output)
+        if keys:
+            self.sources.append(output)
+
+    def find(self, asked: Model) -> Model:
+        """Model of the device that is there: the one that was asked for, or the one like it.
+
+        It has the style that the options say.
+
+        Raises
+        ------
+        VbrailleError
+            If the device cannot be opened, has other actuators than the model that was asked for,
+            or a carriage that does not go as far as options ask.
+        """
+        chosen, display = self.ctx.params, self.device.find()
+        model = replace(asked, display=display)
+        if not is_simulated(chosen["device"]):
+            if (travel_mm := chosen.get("travel")) is not None:
+                check_travel(display, travel_mm)
+            check_height(display, chosen.get("height"))
+            if chosen["model"]:
+                check_actuators(display, asked.display)
+                model = replace(MODELS[chosen["model"]], display=display)
+            else:
+                model = model_of(display)
+        if "profile" not in chosen:  # of a command whose options say how braille is shown
+            return model
+        return build_model(self.ctx, model, display.travel_mm)
+
+    def start(self, model: Model, *, language: str = "en", table: Any = None) -> None:
         """Drive the device; all that is said is spoken, or on pins, too, as options ask."""
         self.device.start(model)
-        console, chosen = self.outputs[0], ctx.params
+        console, chosen = self.outputs[0], self.ctx.params
         if chosen["speech"]:
-            self.outputs.append(Behind("speech", lambda: Speech(language), console.say))
-            self.stack.callback(self.outputs[-1].close)
+            self.add(Behind("speech", lambda: Speech(language), console.say))
         if chosen.get("also"):
             from vbraille.reading.pins import Pins
             from vbraille.translate import choose_table
 
-            pins = Pins(chosen["also"], table or choose_table(), console.say)
-            self.stack.callback(pins.close)
-            self.outputs.append(pins)
-            self.sources.append(pins)
+            self.add(Pins(chosen["also"], table or choose_table(), console.say), keys=True)
 
-    def explore(self, ctx: click.Context, what: Explored, *, own: bool = False) -> None:
-        """Explore until there is no more, or a person ends it."""
+    def explore(self, what: Explored, *, own: bool = False) -> None:
+        """Explore until there is no more, or a person ends it; by keys of their own, if `own`."""
         self.stack.enter_context(self.keyboard)
         if self.keyboard.attached:
             what.say(f"press {'h' if what.key_set == 'usual' else 'f1'} for the keys")
-        keys = {}
-        if own:
-            settings = settings_of(ctx)
-            keys = own_keys(settings.table("keys"), settings.table("buttons"))
+        keys = keys_of(self.ctx) if own else {}
         Exploration(what, self.device, self.keyboard, self.outputs[0], self.sources, keys).run()
 
 
+def keys_of(ctx: click.Context) -> dict[str, str]:
+    """Names of commands by the keys of one's own in the settings file."""
+    settings = settings_of(ctx)
+    return own_keys(settings.table("keys"), settings.table("buttons"))
+
+
 @contextmanager
-def equipped(
-    ctx: click.Context, wanted: Display, *, hand: str, echo: str = "none", beside: bool = False
-) -> Iterator[Equipment]:
+def equipped(ctx: click.Context, wanted: Display, echo: str = "none") -> Iterator[Equipment]:
     """Set up a device with its outputs; at the end it goes to rest.
 
     Parameters
@@ -107,37 +134,34 @@ def equipped(
         Context of a command with the options of device and output.
     wanted
         Display that a simulated device is made like.
-    hand
-        Hand of a simulated device.
     echo
-        What is printed of each line.
-    beside
-        Whether standard input is read by others.
+        Form in which each line is printed.
     """
     chosen, asked = ctx.params, given(ctx)
-    if not is_simulated(chosen["device"]):
-        refuse_hand(chosen["device"], **{n: chosen[n] for n in ("hand", "seed") if n in asked})
+    spec, hand, seed = chosen["device"], chosen["hand"], chosen["seed"]
+    if is_simulated(spec):  # a wrong hand is refused before a process is begun
+        parse_hand(hand, seed, pointed=chosen["monitor"] or ctx.info_name == "feel")
+    else:
+        refuse_hand(spec, **{name: chosen[name] for name in ("hand", "seed") if name in asked})
     with ExitStack() as stack:
-        keyboard = Keyboard(beside=beside)
-        if is_simulated(chosen["device"]):  # refused before a process is begun
-            moved = bool(chosen["monitor"]) or ctx.info_name == "feel"
-            parse_hand(hand, chosen["seed"], pointed=moved)
-        device = ReadingDevice(
-            chosen["device"],
-            replace(wanted, rate_hz=chosen["rate"]),
-            often="rate" in asked,
-            hand=hand,
-            seed=chosen["seed"],
-        )
-        outputs: list[Any] = [Console(echo)]
-        cues = chosen["cues"] or _cues(keyboard)
+        keyboard = Keyboard(beside=chosen.get("file") == "-")
+        wanted = replace(wanted, rate_hz=chosen["rate"])
+        device = ReadingDevice(spec, wanted, often="rate" in asked, hand=hand, seed=seed)
+        console = Console(echo)
+        equipment = Equipment(ctx, stack, device, keyboard, [console], [])
+        cues = chosen["cues"] or "none"
+        if not chosen["cues"] and keyboard.attached and sys.stdout.isatty():
+            cues = "bell" if os.environ.get("SSH_CONNECTION") else "tones"
         if cues != "none":
-            tones = cues == "tones"
-            outputs.append(Behind("cues", lambda: Signals(tones=tones), outputs[0].say))
-            stack.callback(outputs[-1].close)
-        equipment = Equipment(device, keyboard, outputs, [], stack)
+            equipment.add(Behind("cues", lambda: Signals(tones=cues == "tones"), console.say))
         if chosen["monitor"]:
-            _add_view(equipment, ctx)
+            from vbraille.live.view import LiveView
+            from vbraille.reading.liveview import LiveOutput
+
+            view = stack.enter_context(LiveView(host=chosen["host"], port=chosen["port"]))
+            for sentence in view.addresses:
+                console.say(sentence)
+            equipment.add(LiveOutput(view, device, console.say), keys=True)
         try:
             yield equipment
         finally:
@@ -146,55 +170,6 @@ def equipped(
     faults = ", ".join(f"{name} {count}" for name, count in device.counts.items() if count)
     if faults:
         say(f"device: {faults}")
-
-
-def _add_view(equipment: Equipment, ctx: click.Context) -> None:
-    from vbraille.live.view import LiveView
-    from vbraille.reading.liveview import LiveOutput
-
-    view = LiveView(host=ctx.params["host"], port=ctx.params["port"])
-    equipment.stack.enter_context(view)
-    for sentence in view.addresses:
-        equipment.outputs[0].say(sentence)
-    output = LiveOutput(view, equipment.device, equipment.outputs[0].say)
-    equipment.outputs.append(output)
-    equipment.sources.append(output)
-
-
-def _cues(keyboard: Keyboard) -> str:
-    """Cues where none were asked for: the terminal's bell through SSH, and tones nearer by."""
-    import os
-
-    if not (keyboard.attached and sys.stdout.isatty()):
-        return "none"
-    return "bell" if os.environ.get("SSH_CONNECTION") else "tones"
-
-
-def find_model(ctx: click.Context, device: ReadingDevice, asked: Model) -> Model:
-    """Model of the device that is there: the one that was asked for, or the one like it.
-
-    It has the style that the options say.
-
-    Raises
-    ------
-    VbrailleError
-        If the device cannot be opened, has other actuators than the model that was asked for, or
-        a carriage that does not go as far as options ask.
-    """
-    display = device.find()
-    if is_simulated(ctx.params["device"]):
-        model = replace(asked, display=display)
-    else:
-        if (travel_mm := ctx.params.get("travel")) is not None:
-            check_travel(display, travel_mm)
-        check_height(display, ctx.params.get("height"))
-        model = model_of(display)
-        if ctx.params.get("model"):
-            check_actuators(display, asked.display)
-            model = replace(MODELS[ctx.params["model"]], display=display)
-    if "profile" not in ctx.params:  # of a command whose options say how braille is shown
-        return model
-    return build_model(ctx, model, display.travel_mm)
 
 
 def say_summary(device: ReadingDevice, *parts: str, speed: bool = False) -> None:

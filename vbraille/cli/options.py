@@ -89,6 +89,10 @@ class Group(click.Group):
         """Names of the actions."""
         return list(self.commands)
 
+    def action(self, example: str, *options: Callable, name: str | None = None) -> Callable:
+        """Make the decorator of an action, as `command` does."""
+        return command(example, *options, group=self, name=name)
+
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
@@ -208,6 +212,14 @@ def seconds(text: str) -> float:
     return time_s
 
 
+def pair(text: str) -> tuple[str, str]:
+    """Name and value of a text such as P07=REASON."""
+    name, _, value = (part.strip() for part in text.partition("="))
+    if not (name and value):
+        raise click.BadParameter(f"{text!r} is not a name and a value, such as NAME=VALUE")
+    return name, value
+
+
 def option(*names: str, **how: Any) -> Callable:
     """Make the decorator of an option.
 
@@ -223,13 +235,29 @@ def option(*names: str, **how: Any) -> Callable:
     return decorate
 
 
-def takes(*options: Callable) -> Callable:
-    """Give a command options, listed in this order."""
+def command(
+    example: str, *options: Callable, group: click.Group | None = None, name: str | None = None
+) -> Callable:
+    """Make the decorator of a command, or of an action of a group.
 
-    def decorate(function: Callable) -> Callable:
+    Parameters
+    ----------
+    example
+        Words of an example after "vbraille"; empty for none.
+    options
+        Decorators of its options and arguments, listed in this order.
+    group, name
+        Command that it is an action of, and its name there if it is not the function's.
+    """
+
+    def decorate(function: Callable) -> click.Command:
         for each in reversed(options):
             function = each(function)
-        return function
+        epilog = f"Example: vbraille {example}" if example else None
+        made = click.command(name, cls=Command, epilog=epilog)(function)
+        if group is not None:
+            group.add_command(made)
+        return made
 
     return decorate
 
@@ -349,5 +377,7 @@ workers = option("--workers", type=whole(1, 1024), metavar="N", default=1, help=
 TRANSLATION = (language, grade, table, encoding, form, brf_table, foreign, undefined, keep_lines)
 DISTANCES = (dot_width, dot_spacing, cell_gap, line_pitch, geometry)
 FEEL = (texture, contrast, texture_cycles, *DISTANCES, mapping, dot_row)
-PAGE = (height, straying, band)
+CARRIAGE = (straying, band, travel, height)
 LIVE = (monitor, host, port)
+HAND = (device, hand, model(group=FIRST))
+AROUND = (speech, cues, also, rate, seed, *LIVE, settings)  # of commands that drive a device

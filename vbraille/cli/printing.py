@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import sys
 import time
-from typing import Any
+from typing import TYPE_CHECKING
 
 from vbraille.wording import duration, printable, spelled
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 _SHORT_S = 2.0  # work that is soon over, of which nothing is said
 
@@ -26,16 +29,13 @@ def print_json(value: object) -> None:
     print(msgspec.json.format(msgspec.json.encode(value), indent=2).decode())
 
 
-def print_rows(rows: list[dict[str, Any]], *, as_json: bool, empty: str = "") -> None:
-    """Print rows of a table as JSON, or as lines of ``label: value``."""
+def show(lines: Iterable[str], value: object, *, as_json: bool) -> None:
+    """Print what was found as lines, or else the value of it as JSON."""
     if as_json:
-        print_json(rows)
+        print_json(value)
         return
-    for row in rows:
-        for label, value in row.items():
-            say(f"{label.replace('_', ' ')}: {value}")
-    if not rows and empty:
-        say(empty)
+    for line in lines:
+        say(line)
 
 
 class Progress:

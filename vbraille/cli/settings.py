@@ -187,6 +187,11 @@ def given(ctx: click.Context) -> set[str]:
     return {name for name in names if ctx.get_parameter_source(name) in sources}
 
 
+def is_default(ctx: click.Context, name: str) -> bool:
+    """Tell whether nothing gives an option a value."""
+    return ctx.get_parameter_source(name) is ParameterSource.DEFAULT
+
+
 def style_options(ctx: click.Context, display: str) -> dict[str, tuple[Any, str]]:
     """Options on how braille feels on a display: the value of each, and its origin.
 

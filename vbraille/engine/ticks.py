@@ -184,24 +184,8 @@ def _take_pose(now, window, velocities, device_ns, pose):
 
 
 @_compiled
-def _wanted(now, taking, numbers):
-    """Serial number of the picture that belongs under the hand now; 0 is rest."""
-    if now["paused"] or now["placed"] == 0 or not taking or now["turned"]:
-        return 0
-    if now["time_ns"] - now["sampled_ns"] > SILENCE_NS:
-        return 0
-    # A picture that moves by itself is felt without moving the hand, though not without end.
-    still_ns = now["time_ns"] - now["moved_ns"]
-    if numbers[work.FREQUENCY] == 0.0 and still_ns > IDLE_NS:
-        return 0
-    if still_ns > patience(numbers) * NS_PER_S:
-        return 0
-    return now["serial"]
-
-
-@_compiled
 def _decide(now, y_mm, rested, taking, numbers):
-    """Decide what is shown in this tick, and how far it has faded in."""
+    """Decide what is shown in this tick, how far it has faded in, and what is remarked on it."""
     if rested != now["rested"]:
         now["rested"] = rested
         now["flags"] |= _RESTED
@@ -211,7 +195,14 @@ def _decide(now, y_mm, rested, taking, numbers):
         now["faded_ns"] = now["fading_ns"]
     turned = now["placed"] != 0 and too_far(numbers, now["theta_rad"], now["turned"] != 0)
     now["turned"] = 1 if turned else 0
-    wanted = _wanted(now, taking, numbers)
+    silent = now["time_ns"] - now["sampled_ns"] > SILENCE_NS
+    away = now["placed"] == 0 or turned or not taking or silent
+    # A picture that moves by itself is felt without moving the hand, though not without end.
+    still_ns = now["time_ns"] - now["moved_ns"]
+    idle = still_ns > patience(numbers) * NS_PER_S
+    idle = idle or (numbers[work.FREQUENCY] == 0.0 and still_ns > IDLE_NS)
+    # Serial number of the picture that belongs under the hand now; 0 is rest.
+    wanted = 0 if now["paused"] or away or idle else now["serial"]
     # A finger at the edge of its line stays on it over a rest, and when the page comes in another
     # style, too.
     part = part_of(numbers, y_mm, now["part"])
@@ -226,29 +217,45 @@ def _decide(now, y_mm, rested, taking, numbers):
     now["part"] = part
     fading = now["faded_ns"] < now["fading_ns"]
     now["share"] = now["faded_ns"] / now["fading_ns"] if fading else 1.0
-
-
-@_compiled
-def _remark(now, taking):
-    """Set the flags that say what a tick was like."""
-    silent = now["time_ns"] - now["sampled_ns"] > SILENCE_NS
-    away = now["placed"] == 0 or now["turned"] or not taking or silent or now["flags"] & _RESTED
-    unfelt = now["serial"] != 0 and not now["paused"] and away
+    unfelt = now["serial"] != 0 and not now["paused"] and (away or now["flags"] & _RESTED)
     now["flags"] |= (
-        _PAUSED * (now["paused"] != 0)
+        _RESTING * (wanted == 0)
+        + _PAUSED * (now["paused"] != 0)
         + _SILENT * silent
         + _HELD * (not taking)
-        + _TURNED * now["turned"]
+        + _TURNED * turned
         + _UNFELT * (unfelt != 0)
     )
 
 
 @_compiled
-def _show(flags, share, part, numbers, table, scratch, at, output, held, target):
-    """Make the frame of a tick from the one before it.
+def _make(numbers, table, scratch, at, own, flags, part, output, held, target):
+    """Make the frame of a tick from the one before it, and compute the signals of its picture.
 
     The first tick of a change still sends the old frame, the last one the new one alone.
+
+    Parameters
+    ----------
+    numbers, table, scratch
+        The program that is wanted under the hand.
+    at : float64[AT]
+        Memory of the signals, and the time of the picture at the tick before.
+    own : float64[FLOATS]
+        Numbers of the tick's record.
+    flags, part
+        Of the record, too.
+    output, held, target : float64[rows, columns]
+        The frame of the tick before, which is changed, the one that the fade began with, and room
+        for another.
     """
+    before_s = at[work.TIME]
+    if own[X] == own[X]:  # its place is known
+        at[work.X], at[work.Y], at[work.THETA] = own[X], own[Y], own[THETA]
+    at[work.TIME], at[work.VX], at[work.VY] = own[SHOWN], own[VX], own[VY]
+    if numbers[work.KIND] == SCENE:
+        if at[work.TIME] == 0.0:
+            begin(numbers, at)
+        compute(numbers, at, max(at[work.TIME] - before_s, 0.0))
     if flags & _RESTED:
         output[:] = 0.0
     if flags & _CHANGED:
@@ -257,19 +264,10 @@ def _show(flags, share, part, numbers, table, scratch, at, output, held, target)
         target[:] = 0.0
     else:
         frame(numbers, table, scratch, part, at, target)
-    if share < 1.0:
-        blend(held, target, share, output)
+    if own[SHARE] < 1.0:
+        blend(held, target, own[SHARE], output)
     else:
         copy(target, output)
-
-
-@_compiled
-def _answer(numbers, at, before_s):
-    """Compute the signals of a tick, whose picture's own time was so much at the tick before."""
-    if numbers[work.KIND] == SCENE:
-        if at[work.TIME] == 0.0:
-            begin(numbers, at)
-        compute(numbers, at, max(at[work.TIME] - before_s, 0.0))
 
 
 @_compiled
@@ -323,7 +321,6 @@ def advance(
         now_ns = times_ns[n, 0]
         passed_ns = min(now_ns - now["time_ns"], now["step_ns"])
         now["time_ns"], now["flags"] = now_ns, 0
-        shown_before_s = now["shown_ns"] / NS_PER_S
         if now["shown"] != 0:
             now["shown_ns"] += passed_ns
         unsent_ns = now_ns - now["sent_ns"]
@@ -338,20 +335,14 @@ def advance(
         placed = now["placed"] != 0
         y_mm = now["own_y_mm"] if placed and now["free_y"] != 0 else numbers[work.OWN_Y]
         _decide(now, y_mm, rested, taking, numbers)
-        if now["shown"] == 0:
-            now["flags"] |= _RESTING
         now["shown_s"] = now["shown_ns"] / NS_PER_S
         if placed:
             now["y_mm"] = y_mm
-            at[work.X], at[work.Y], at[work.THETA] = now["x_mm"], y_mm, now["theta_rad"]
         at[work.SWITCHES] = now["switches"]
-        at[work.TIME], at[work.VX], at[work.VY] = now["shown_s"], now["vx_mm_s"], now["vy_mm_s"]
-        _answer(numbers, at, shown_before_s)
         if not taking:
             output[:] = 0.0
-        flags, share, part = now["flags"], now["share"], now["part"]
-        _show(flags, share, part, numbers, table, scratch, at, output, held, target)
-        _remark(now, taking)
+        flags, part = now["flags"], now["part"]
+        _make(numbers, table, scratch, at, own_floats, flags, part, output, held, target)
         slot = (first + n) % ints.shape[0]
         for k in range(own_ints.shape[0]):
             ints[slot, k] = own_ints[k]
@@ -389,12 +380,8 @@ def replay(numbers, table, scratch, ints, floats, at, output, held, target, fram
         What the actuators did, to fill.
     """
     for n in range(ints.shape[0]):
-        before_s = at[work.TIME]
-        at[work.X], at[work.Y], at[work.THETA] = floats[n, X], floats[n, Y], floats[n, THETA]
-        at[work.TIME], at[work.VX], at[work.VY] = floats[n, SHOWN], floats[n, VX], floats[n, VY]
-        _answer(numbers, at, before_s)
-        flags, share, part = ints[n, FLAGS], floats[n, SHARE], ints[n, PART]
-        _show(flags, share, part, numbers, table, scratch, at, output, held, target)
+        flags, part = ints[n, FLAGS], ints[n, PART]
+        _make(numbers, table, scratch, at, floats[n], flags, part, output, held, target)
         if flags & _HELD:  # the actuators rested, though the loop goes on from its frame
             frames[n] = 0.0
         else:

@@ -47,11 +47,8 @@ _RULE = bytes([mask_of((3, 6))] * 4)
 # Steps before the first line of a block and before the others; for items and quotations, beside
 # those of their level.
 _INDENTS = {
-    BlockKind.PARAGRAPH: (1, 0),
-    BlockKind.NOTE: (1, 0),
     BlockKind.HEADING: (2, 2),
     BlockKind.ITEM: (-1, 0),
-    BlockKind.QUOTE: (1, 0),
     BlockKind.ROW: (0, 1),
     BlockKind.LINE: (0, 1),
     BlockKind.PAGE: (0, 0),
@@ -240,7 +237,7 @@ def indents(block: Block, width: int) -> tuple[int, int]:
     width
         Number of cells in a line.
     """
-    first, others = _INDENTS[block.kind]
+    first, others = _INDENTS.get(block.kind, (1, 0))
     depth = 0 if block.kind is BlockKind.HEADING else block.level
     first = others if block.continues else first
     most = (width - 1) // (2 * STEP) * STEP

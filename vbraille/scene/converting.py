@@ -7,10 +7,9 @@ import os
 import re
 import textwrap
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from msgspec.structs import fields, replace
 
@@ -115,8 +114,7 @@ def _text(value: object) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
-@dataclass(frozen=True, slots=True)
-class ConvertedScene:
+class ConvertedScene(NamedTuple):
     """A scene file made of one of another format.
 
     Parameters

@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
-from msgspec.structs import replace
+from msgspec.structs import asdict, replace
 
 from vbraille.errors import InputError
 from vbraille.files import read_text
@@ -393,10 +393,9 @@ class _Reading:
         self._warnings += [
             f"{path}{'' if one.startswith('line ') else ':'} {one}" for one in found.warnings
         ]
-        own = {key: getattr(found.scene, key) for key in Scene.__struct_fields__}
-        if own["language"] == _UNSAID_LANGUAGE:
-            own["language"] = ""
-        form = SceneFile(**own)
+        form = SceneFile(**asdict(found.scene))
+        if form.language == _UNSAID_LANGUAGE:
+            form = replace(form, language="")
         source = ForeignFile(str(path), found.lines)
         return form, self._own(source, form, way, folder, form.language or language)
 

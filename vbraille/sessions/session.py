@@ -101,8 +101,9 @@ class Session:
         loaded = load_protocol(str(protocol))
         path = Path(path) if path else _free_path(participant, loaded.name)
         number = session or 1 + _participants(path.absolute().parent).count(participant)
-        chosen = {"order": order, "group": group}
-        loaded, plan = plan_session(loaded, participant, seed, number, best_from, **chosen)
+        loaded, plan = plan_session(
+            loaded, participant, seed, number, best_from, order=order, group=group
+        )
         head = {
             "protocol": loaded.name,
             "participant": participant,

@@ -56,21 +56,15 @@ class Archive:
                 f"get it again"
             ) from None
         self.members = self._zip.namelist()
-        self._alike: dict[str, list[str]] = {}
-        for member in self.members:
-            self._alike.setdefault(_plain(member), []).append(member)
+        self._alike: dict[str, list[zipfile.ZipInfo]] = {}
+        for info in self._zip.infolist():
+            self._alike.setdefault(_plain(info.filename), []).append(info)
 
-    def find(self, name: str) -> str | None:
+    def find(self, name: str) -> zipfile.ZipInfo | None:
         """Member of a name, or the only one that differs from it in case or accents alone."""
-        if name in self._zip.NameToInfo:
-            return name
         alike = self._alike.get(_plain(name), [])
-        return alike[0] if len(alike) == 1 else None
-
-    def size(self, name: str) -> int:
-        """Number of bytes of a member; 0 if it is not there."""
-        member = self.find(name)
-        return 0 if member is None else self._zip.getinfo(member).file_size
+        exact = [info for info in alike if info.filename == name]
+        return exact[-1] if exact else alike[0] if len(alike) == 1 else None
 
     def read(self, name: str) -> bytes:
         """Read a member.
@@ -80,10 +74,9 @@ class Archive:
         InputError
             If it is not there, locked, damaged or too large.
         """
-        member, told = self.find(name), printable(name)
-        if member is None:
+        info, told = self.find(name), printable(name)
+        if info is None:
             raise InputError(f"{self.name} lacks its part {told}; get the book again")
-        info = self._zip.getinfo(member)
         if info.flag_bits & _ENCRYPTED:
             raise InputError(
                 f"{self.name} is locked by a password of the zip archive; unpack it with that "

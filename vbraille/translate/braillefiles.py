@@ -36,12 +36,13 @@ def read_brf(
     source.expected = len(text)
     text = text.rstrip("\x1a\0 \n\r\t").replace("\r\n", "\n").replace("\r", "\n")
     dialect = {} if brf_table is None else _dialect(brf_table)
-    pages = (
-        [line.translate(_BLANKS).rstrip().translate(dialect) for line in lines]
-        for lines in (
-            sheet.removesuffix("\n").split("\n") for sheet in text.rstrip("\f").split("\f")
-        )
-    )
+    pages = [
+        [
+            line.translate(_BLANKS).rstrip().translate(dialect)
+            for line in sheet.removesuffix("\n").split("\n")
+        ]
+        for sheet in text.rstrip("\f").split("\f")
+    ]
     return _blocks(source, pages, "[^ -~⠀-⣿]", numbered="\f" in text)
 
 

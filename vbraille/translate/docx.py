@@ -15,7 +15,6 @@ from vbraille.translate.office import (
     heading,
     put_picture,
     role_of,
-    symbol,
     tag_of,
 )
 from vbraille.translate.trees import Element, names
@@ -116,17 +115,19 @@ class _Docx(Document):
             case "oMath" | "oMathPara":
                 into.add("math").children.append(element)
             case "sym":
-                sign = symbol(_hexadecimal(element.get("char")), element.get("font"))
-                self.say(into, sign, look)
-                if not sign:
-                    put_picture(into, [], "canvas", "symbol")
+                font, code = (
+                    font_of(element.get("font")),
+                    _hexadecimal(element.get("char")) or 0xFFFD,
+                )
+                code |= 0xF000 if font and code < 0x100 else 0
+                self.say(into, chr(code), look | font)
             case "footnoteReference" | "endnoteReference" as name:
                 self.refer(into, f"{name.removesuffix('Reference')}-{element.get('id')}")
             case "AlternateContent":
-                # What this program knows, or else what is there for older ones.
-                drawn = [e for e in _find(element, "Choice").elements if e.name in _NAMES["drawn"]]
-                for inner in drawn or element.iter("t", "sym"):
-                    self.read(inner, into, look)
+                known = len(into.children)
+                for inner in element.elements:  # the first that is known here
+                    if len(into.children) == known:
+                        self.inner(inner, into, look)
             case name if name in _NAMES["drawn"]:
                 self._drawing(element, into)
             case _:

@@ -79,11 +79,10 @@ class _Epub:
                 f"{source.name} does not say what its chapters are: its spine is empty; get "
                 f"another copy of the book"
             )
-        if not any(self.archive.find(chapter.get("href")) for chapter in self.chapters):
+        found = [self.archive.find(chapter.get("href")) for chapter in self.chapters]
+        source.expected = sum(info.file_size for info in found if info is not None) * 3 // 4
+        if not any(found):
             raise InputError(f"{source.name} has none of its chapters; get the book again")
-        source.expected = (
-            sum(self.archive.size(each.get("href")) for each in self.chapters) * 3 // 4
-        )
 
     def _tree(self, member: str) -> Element:
         """Tree of a part that may be missing; a raw "&" or an open tag does not spoil it."""

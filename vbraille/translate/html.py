@@ -13,7 +13,7 @@ from vbraille.translate.encodings import tidy
 from vbraille.translate.formulas import formula_text
 from vbraille.translate.grids import EMPHASES, joined, table_blocks
 from vbraille.translate.numbering import BULLET, list_markers, whole
-from vbraille.translate.spellings import lowered, raised
+from vbraille.translate.spellings import LOWERED, RAISED, small
 from vbraille.translate.trees import Element, inside, names, read_tree
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ _NAMES = names("html")
 _EMPHASES = {
     name: MarkKind(kind) for kind, told in _NAMES["emphases"].items() for name in told.split()
 }
-_SMALL = {MarkKind.SUPERSCRIPT: raised, MarkKind.SUBSCRIPT: lowered}
+_SMALL = {MarkKind.SUPERSCRIPT: RAISED, MarkKind.SUBSCRIPT: LOWERED}
 _EMPHATIC = (BlockKind.HEADING, BlockKind.QUOTE)
 _WORD_NOTE = re.compile(r"#_(?:ftn|edn)\d+$")
 _BLANKS = re.compile(r"[\t\r\n\f][ \t\r\n\f]*| [ \t\r\n\f]+")  # but single spaces
@@ -36,7 +36,7 @@ _LONGEST_NUMBER = 6  # of a note, with its brackets
 def read_html(source: Source, encoding: str | None = None) -> Iterator[Block]:
     """Read a page of HTML, or DTBook, the markup of DAISY 3."""
     content = source.stream.read()
-    xml = source.form == "dtbook" or content[:200].lstrip().startswith(b"<?xml")
+    xml = content[:200].lstrip().startswith(b"<?xml")
     root = read_tree(content, source.name, source.note, xml=xml, encoding=encoding)
     return tree_blocks(source, root)
 
@@ -236,7 +236,7 @@ class Walker:
                 if kind in _SMALL and refers:
                     continue
                 if kind in _SMALL:
-                    self._text[start:] = _SMALL[kind]("".join(self._text[start:]))
+                    self._text[start:] = small("".join(self._text[start:]), _SMALL[kind])
                 self._marks.append(Mark(kind, start, len(self._text)))
         if is_block:
             self._end()
@@ -272,17 +272,13 @@ class Walker:
                 self._add("  ")
             case "sup":
                 self._become(refers=bool(words & _NAMES["references"]))
-            case "pre":
-                self._become(BlockKind.LINE, lines=True)
-            case "line":
-                self._become(BlockKind.LINE)
+            case "pre" | "line" as name:
+                self._become(BlockKind.LINE, lines=name == "pre")
             case "note" | "annotation":
                 self._become(BlockKind.NOTE)
             case "blockquote" if role.kind is not BlockKind.NOTE:
                 self._become(BlockKind.QUOTE, role.quotes + 1, quotes=role.quotes + 1)
-            case "doctitle":
-                self._become(BlockKind.HEADING, 1)
-            case "hd" | "bridgehead":
+            case "doctitle" | "hd" | "bridgehead":
                 self._become(BlockKind.HEADING, max(role.sections, 1))
             case "ul" | "ol" | "list" | "menu" | "dl":
                 group = role.group if role.items else next(self._groups)
@@ -333,8 +329,7 @@ class Walker:
         self._add(after)
 
     def _item(self, element: Element) -> None:
-        lead = element.attributes.get("data-marker")
-        lead = self._role.marker(element) if lead is None else lead
+        lead = element.get("data-marker", self._role.marker(element))
         self._lead = self._lead + lead if self._lead not in ("", BULLET) else lead
         if self._role.notes or self._role.kind is BlockKind.NOTE:
             self._become(BlockKind.NOTE, notes=False)
@@ -462,7 +457,6 @@ def _clipped(text: str, start: int, marks: list[Mark], role: _Role) -> Block:
             language = mark.target
         elif not (is_whole and mark.kind in EMPHASES and role.kind in _EMPHATIC):
             kept.append(mark)
-    kept = [mark for mark in kept if mark.kind is not MarkKind.LANGUAGE or mark.target != language]
     kept.sort(key=lambda mark: (mark.start, -mark.end))
     return Block(body, role.kind, role.level, None, tuple(kept), language, group=role.group)
 
@@ -474,9 +468,8 @@ def _label(element: Element) -> str:
 
 def _same(one: str, other: str) -> bool:
     """Tell whether two tags are of one language, or the first of none."""
-    one, other = one.lower(), other.lower()
-    related = one.startswith(f"{other}-") or other.startswith(f"{one}-")
-    return one == other or related or one in ("und", "zxx")
+    one, other = f"{one.lower()}-", f"{other.lower()}-"
+    return one.startswith(other) or other.startswith(one) or one in ("und-", "zxx-")
 
 
 def _is_hidden(element: Element) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass, field
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from vbraille.translate.archive import Archive
@@ -54,13 +55,6 @@ def signs(text: str, font: str) -> str:
     return _PRIVATE.sub(lambda found: known.get(ord(found[0]) & 0xFF, found[0]), text)
 
 
-def symbol(code: int, font: str) -> str:
-    """Character of a code of a font; empty if it is not known here."""
-    sign = signs(chr(code if code > 0xFF else code | 0xF000), font_of(font).get("font", ""))
-    sign = chr(code) if _PRIVATE.match(sign) else sign
-    return "" if _PRIVATE.match(sign) or not sign.isprintable() else sign
-
-
 def font_of(name: str) -> Look:
     """Look of text in a font of signs; nothing for other fonts."""
     font = name.lower().split(" ")[0]
@@ -80,12 +74,10 @@ def heading(level: int) -> Look:
     return {"role": f"h{min(level, 6)}" if level else ""}
 
 
-def tag_of(language: str, country: str = "") -> Look:
+def tag_of(*parts: str) -> Look:
     """Look of text in a language as a word processor has it; nothing if that is none."""
-    language, country = language.strip(), country.strip()
-    if language.lower() in _NO_LANGUAGE:
-        return {}
-    return {"lang": f"{language}-{country}" if country.lower() not in _NO_LANGUAGE else language}
+    known = list(takewhile(lambda part: part.lower() not in _NO_LANGUAGE, map(str.strip, parts)))
+    return {"lang": "-".join(known)} if known else {}
 
 
 class Level(NamedTuple):

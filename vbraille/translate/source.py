@@ -6,7 +6,7 @@ import hashlib
 import re
 from bisect import bisect_right
 from functools import cached_property
-from math import inf
+from itertools import islice
 from typing import TYPE_CHECKING, BinaryIO, NamedTuple
 from weakref import finalize
 
@@ -19,9 +19,11 @@ if TYPE_CHECKING:
     Reader = Callable[["Source"], Iterator[Block]]
 
 PIECE = 8_192  # characters of a block; a longer one comes in pieces
-# As many characters as may be, up to the end of a sentence in their second half, or of a word.
+# The rest, or as many characters as may be, up to the end of a sentence in their second half, or of
+# a word.
 _PIECE = re.compile(
-    rf"(?s).{{{PIECE // 2},{PIECE}}}(?<=[.!?…] )|.{{1,{PIECE}}}(?<= )|.{{1,{PIECE}}}"
+    rf"(?s).{{1,{PIECE}}}\Z|.{{{PIECE // 2},{PIECE}}}(?<=[.!?…] )"
+    rf"|.{{1,{PIECE}}}(?<= )|.{{1,{PIECE}}}"
 )
 
 
@@ -90,37 +92,21 @@ class Source:
         self._anchors: dict[str, int] = {}
         self._notes: dict[str, bool] = {}  # whether they are new
         finalize(self, stream.close)
-        self._reading = reader(self)
+        self._reading = (piece for block in reader(self) for piece in _pieces(block))
         self.gather(1)
         if not self._blocks:
             raise InputError(f"{name} has no text in it; give another file")
 
-    def gather(self, blocks: float) -> bool:
-        """Read some more blocks; tell whether all are read."""
-        while blocks > 0 and not self.complete:
-            blocks -= 1
-            block = next(self._reading, None)
-            if block is None:
-                self.complete = True
-            else:
-                self._add(block)
+    def gather(self, blocks: int | None = None) -> bool:
+        """Read some more blocks, or all; tell whether all are read."""
+        before = len(self._blocks)
+        for block in islice(self._reading, blocks):
+            start = self.end + 1
+            for name in block.anchors:
+                self._anchors.setdefault(name, start)
+            self._blocks.append(block.replace(number=len(self._blocks), start=start))
+        self.complete |= blocks is None or len(self._blocks) - before < blocks
         return self.complete
-
-    def _add(self, block: Block) -> None:
-        """Add a block, in pieces if it is long; each goes on where the one before broke off."""
-        for name in block.anchors:
-            self._anchors.setdefault(name, self.end + 1)
-        for start, stop in _pieces(block.text):
-            piece = block
-            if stop - start < len(block.text):
-                piece = block.replace(
-                    text=block.text[start:stop],
-                    marks=cut_marks(block.marks, start, stop),
-                    cells=None if block.cells is None else block.cells[start:stop],
-                )
-            if start:
-                piece = piece.replace(continues=True, anchors=(), entry=None)
-            self._blocks.append(piece.replace(number=len(self._blocks), start=self.end + 1))
 
     @property
     def end(self) -> int:
@@ -130,12 +116,12 @@ class Source:
     @cached_property
     def text(self) -> str:
         """All of the text; what is not read yet is read now."""
-        self.gather(inf)
+        self.gather()
         return "\n".join(block.text for block in self._blocks)
 
     def block(self, number: int) -> Block | None:
         """Block of a number, from 0; None past either end."""
-        self.gather(number + 1 - len(self._blocks))
+        self.gather(max(number + 1 - len(self._blocks), 0))
         return self._blocks[number] if 0 <= number < len(self._blocks) else None
 
     def blocks(self, number: int = 0, step: int = 1) -> Iterator[Block]:
@@ -203,12 +189,16 @@ class Source:
         self.stream.close()
 
 
-def _pieces(text: str) -> Iterator[tuple[int, int]]:
-    """First and last place of the pieces of a text, cut after a sentence or at least a word."""
-    start = 0
-    while len(text) - start > PIECE:
-        found = _PIECE.match(text, start)
-        assert found is not None
-        yield start, found.end()
-        start = found.end()
-    yield start, len(text)
+def _pieces(block: Block) -> Iterator[Block]:
+    """A block, or its pieces, each of which goes on where the one before broke off."""
+    if len(block.text) <= PIECE:
+        yield block
+        return
+    for found in _PIECE.finditer(block.text):
+        start, stop = found.span()
+        piece = block.replace(
+            text=found[0],
+            marks=cut_marks(block.marks, start, stop),
+            cells=None if block.cells is None else block.cells[start:stop],
+        )
+        yield piece.replace(continues=True, anchors=(), entry=None) if start else piece

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from enum import StrEnum
 from functools import cache
-from itertools import permutations
 from pathlib import Path
 from typing import TYPE_CHECKING
 from unicodedata import category, combining, decimal, name, normalize
@@ -25,9 +24,9 @@ class Undefined(StrEnum):
     MARK
         A sign for an unknown character; emoji by their names.
     NAME
-        Its name in brackets.
+        The name of the character, in brackets.
     CODE
-        Its number in brackets.
+        The number of the character, in brackets.
     DROP
         Nothing.
     """
@@ -60,9 +59,6 @@ _SIGNS = {
 _SHADDA = "\u0651"
 # NUL, at which liblouis stops; soft hyphens, which part contractions; marks of the byte order.
 _LEFT_OUT = "\0\u00ad\ufeff"
-# First letters of alphabets in squares and circles, and of flags; Unicode has no spelling of these.
-_ALPHABETS = (0x1F150, 0x1F170)
-_FLAGS = 0x1F1E6
 _SKIN_TONES = "🏻🏼🏽🏾🏿"
 # Zeros of the scripts whose digits tables have, where they do not have all.
 _ZEROS = "0٠۰०০੦૦୦௦౦೦൦๐໐༠၀០"
@@ -75,38 +71,29 @@ _COMPOSED = {
 }
 # Small signs above and below the line, by those on the line.
 _ON_LINE = "0123456789+-=()ni"
-_RAISED, _LOWERED = "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻⁼⁽⁾ⁿⁱ", "₀₁₂₃₄₅₆₇₈₉₊₋₌₍₎ₙᵢ"
+RAISED, LOWERED = "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻⁼⁽⁾ⁿⁱ", "₀₁₂₃₄₅₆₇₈₉₊₋₌₍₎ₙᵢ"
 # Before them in Unified English Braille, whose tables lack the second.
 _UEB_RAISED, _UEB_LOWERED = b"\x30\x14", b"\x30\x22"
 
 
-def raised(text: str) -> str:
-    """Text in Unicode's small characters above the line, if it is a number; else as it is."""
-    return _small(text, _RAISED)
+def small(text: str, forms: str) -> str:
+    """Text in small characters, those of `RAISED` or `LOWERED`, if it is a number.
 
-
-def lowered(text: str) -> str:
-    """Text in Unicode's small characters below the line, if it is a number; else as it is.
-
-    >>> lowered("2"), raised("th")
+    >>> small("2", LOWERED), small("th", RAISED)
     ('₂', 'th')
     """
-    return _small(text, _LOWERED)
-
-
-def _small(text: str, forms: str) -> str:
-    small = text.replace("\u2212", "-").translate(str.maketrans(_ON_LINE, forms))
+    made = text.replace("\u2212", "-").translate(str.maketrans(_ON_LINE, forms))
     is_word = text.isalpha() and len(text) > 1
-    return text if is_word or set(small) - set(forms) else small
+    return text if is_word or set(made) - set(forms) else made
 
 
 def joins(part: str, sign: str) -> bool:
     """Tell whether a sign belongs to the part before it: a mark, a small digit, half a flag."""
     if category(sign)[0] == "M":
         return True
-    if any(sign in forms and part[0] in forms for forms in (_RAISED, _LOWERED)):
+    if any(sign in forms and part[0] in forms for forms in (RAISED, LOWERED)):
         return True
-    return len(part) == 1 and _letter(part, _FLAGS) != "" and _letter(sign, _FLAGS) != ""
+    return len(part) == 1 and all("🇦" <= half <= "🇿" for half in (part, sign))
 
 
 def _in_order(part: str) -> str:
@@ -140,6 +127,7 @@ def spellings(part: str, table: str, how: Undefined) -> list[tuple[Kind | None, 
         *([" ", "⠀"] if part.isspace() else []),
         *[""][: _is_invisible(part)],
     ]
+    equal = (normalize("NFC", part), normalize("NFD", part))
     dots, plain = _small_forms(part, table)
     said = {Undefined.CODE: code, Undefined.NAME: named or code}.get(how, named * is_emoji)
     instead = [""] if how is Undefined.DROP else _bracketed(said) if said else []
@@ -150,7 +138,7 @@ def spellings(part: str, table: str, how: Undefined) -> list[tuple[Kind | None, 
     ]
     found: dict[str, Kind | None] = {}
     for kind, texts in (
-        (None, [*as_it_is, *_equivalents(part), *dots]),
+        (None, [*as_it_is, *equal, *_compositions(part), *dots]),
         (Kind.PLAIN, [*plain, *_plain_spellings(part), *_bare_letters(part)]),
         (Kind.NAME if is_emoji and said == named else Kind.MARKED, instead),
         (Kind.MARKED, markers),
@@ -166,19 +154,6 @@ def _bracketed(text: str) -> list[str]:
     return [f"[{text}]", f"({text})"]
 
 
-def _equivalents(part: str) -> Iterator[str]:
-    """Canonically equal texts: composed, taken apart, with the marks in another order."""
-    yield normalize("NFC", part)
-    apart = normalize("NFD", part)
-    yield apart
-    yield from _compositions(part)
-    if len(apart) <= 4:
-        for marks in permutations(apart[1:]):
-            text = apart[0] + "".join(marks)
-            if normalize("NFD", text) == apart:
-                yield text
-
-
 def _compositions(part: str) -> Iterator[str]:
     """The part with a letter that no normal form has, such as क़, for two or three of its own."""
     letter, *marks = normalize("NFD", part)
@@ -189,7 +164,7 @@ def _compositions(part: str) -> Iterator[str]:
 
 def _small_forms(part: str, table: str) -> tuple[list[str], list[str]]:
     """Spellings of a small number by the table's own sign for such, and as in 10^6 and H_2O."""
-    forms, sign = (_RAISED, "^") if part[0] in _RAISED else (_LOWERED, "_")
+    forms, sign = (RAISED, "^") if part[0] in RAISED else (LOWERED, "_")
     if part[0] not in forms:
         return [], []
     text = part.translate(str.maketrans(forms, _ON_LINE))
@@ -214,14 +189,12 @@ def _lower(mask: int) -> int:
 def _plain_spellings(part: str) -> Iterator[str]:
     """Spellings of a sign, of a compatibility character, of a foreign digit, of a capital."""
     yield from _SIGNS.get(part, ())
-    letters = "".join(_letter(sign, _FLAGS) for sign in part)
-    if letters:
-        yield from _bracketed(letters)
+    # Letters in squares and circles, and of flags, by their names.
+    named = [name(sign, "").partition(" LETTER ")[2] for sign in part if "🅐" <= sign <= "🇿"]
+    if any(named):
+        yield from named if len(named) == 1 else _bracketed("".join(named))
     if part in _SKIN_TONES:
         yield ""
-    for first in _ALPHABETS:
-        if letter := _letter(part, first):
-            yield letter + part[1:]
     plain = normalize("NFKC", part)
     if plain[:1].isdigit() and "⁄" in plain:
         plain = f" {plain}"  # ½ after a number is not the number's next digit
@@ -245,12 +218,6 @@ def _bare_letters(part: str) -> Iterator[str]:
     yield bare.lower()
     if bare.lower() in LETTERS:  # which are the same cells wherever there are Latin letters
         yield chr(UNICODE_BLANK + LETTERS[bare.lower()])
-
-
-def _letter(sign: str, first: int) -> str:
-    """Capital letter that a sign of an alphabet stands for; empty for other signs."""
-    number = ord(sign[0]) - first
-    return chr(ord("A") + number) if 0 <= number < 26 else ""
 
 
 def _is_accent(sign: str) -> bool:

@@ -10,6 +10,7 @@ import html
 import posixpath
 import re
 import tomllib
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
@@ -234,7 +235,12 @@ def read_tree(
     InputError
         If it has more elements than a book has.
     """
-    text, wrong = _decoded(content, encoding)
+    text, wrong = decode(content, encoding)
+    declared = _DECLARED.search(content[:2048])
+    if wrong and declared is not None:
+        said = declared[1].decode("ascii", "replace").lower()
+        with suppress(LookupError, UnicodeDecodeError):
+            text, wrong = content.decode(_VAGUE.get(said, said)), ""
     if wrong:
         note(f"{name} {wrong}")
     text = _XML_HEAD.sub("", text[:4096]) + text[4096:]
@@ -249,16 +255,3 @@ def read_tree(
             f"they were not nested"
         )
     return tree.root
-
-
-def _decoded(content: bytes, encoding: str | None) -> tuple[str, str]:
-    """Text of markup, whatever it declares, and the end of a sentence if that is wrong."""
-    declared = _DECLARED.search(content[:2048])
-    if encoding is None and declared is not None:
-        said = declared[1].decode("ascii", "replace").lower()
-        for name in ("utf-8-sig", _VAGUE.get(said, said)):
-            try:
-                return content.decode(name), ""
-            except (LookupError, UnicodeDecodeError):
-                continue
-    return decode(content, encoding)

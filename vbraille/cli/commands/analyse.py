@@ -8,31 +8,19 @@ from pathlib import Path
 import click
 
 from vbraille.cli import options
-from vbraille.cli.printing import print_json, say
+from vbraille.cli.printing import show
 
 
-def _pairs(given: tuple[str, ...]) -> dict[str, str]:
-    """Return people and reasons."""
-    pairs = {who: why for who, _, why in (text.partition("=") for text in given)}
-    for person, reason in pairs.items():
-        if not person.strip() or not reason.strip():
-            raise click.UsageError(f"--exclude {person} needs a reason: --exclude P07=REASON")
-    return pairs
-
-
-@click.command(
-    cls=options.Command,
-    epilog="Example: vbraille analyse P01-letters.session P02-letters.session --out report",
-)
-@click.argument("paths", nargs=-1, type=click.Path(), metavar="[SESSION|TABLE]...")
-@options.takes(
+@options.command(
+    "analyse P01-letters.session P02-letters.session --out report",
+    click.argument("paths", nargs=-1, type=click.Path(), metavar="[SESSION|TABLE]..."),
     options.out(metavar="DIR", help="New directory for the report, the tables and the figures."),
     options.option("--scores", type=click.Path(), metavar="TABLE",
                    help="Table of scores: participant, what was varied, score."),
     options.option("--measure", metavar="NAME", help="Measure to compare, such as duration."),
     options.option("--factors", metavar="NAME,NAME", help="Columns to compare by."),
     options.option("--protocol", metavar="NAME", help="Take only trials of this protocol."),
-    options.option("--exclude", metavar="P07=REASON", multiple=True,
+    options.option("--exclude", type=options.pair, metavar="P07=REASON", multiple=True,
                    help="Leave a participant out; may be given again."),
     options.json,
 )  # fmt: skip
@@ -43,7 +31,7 @@ def command(
     measure: str | None,
     factors: str | None,
     protocol: str | None,
-    exclude: tuple[str, ...],
+    exclude: tuple[tuple[str, str], ...],
     json: bool,
 ) -> None:
     """Print the planned comparison, or write a report.
@@ -72,14 +60,9 @@ def command(
             protocol=protocol,
             measure=measure,
             factors=None if factors is None else [name.strip() for name in factors.split(",")],
-            exclude=_pairs(exclude),
+            exclude=dict(exclude),
         )
     if out is not None:
         analysis.write(out)
-    if json:
-        print_json(analysis.to_json())
-    elif out is not None:
-        say(f"report: {Path(out) / 'report.html'}")
-    else:
-        for line in analysis.lines():
-            say(line)
+    lines = analysis.lines() if out is None else [f"report: {Path(out) / 'report.html'}"]
+    show(lines, analysis.to_json() if json else None, as_json=json)

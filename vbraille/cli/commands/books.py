@@ -5,13 +5,14 @@ from __future__ import annotations
 import click
 
 from vbraille.cli import options
-from vbraille.cli.printing import print_json, say
+from vbraille.cli.printing import say, show
 
 
-@click.command(cls=options.Command, epilog="Example: vbraille books 2")
-@click.argument("number", type=options.whole(1), required=False)
-@options.takes(
-    options.option("--forget", is_flag=True, help="Delete what is kept of the book."), options.json
+@options.command(
+    "books 2",
+    click.argument("number", type=options.whole(1), required=False),
+    options.option("--forget", is_flag=True, help="Delete what is kept of the book."),
+    options.json,
 )
 @click.pass_context
 def command(ctx: click.Context, number: int | None, forget: bool, json: bool) -> None:
@@ -34,13 +35,13 @@ def command(ctx: click.Context, number: int | None, forget: bool, json: bool) ->
         say(f"{book.title}: forgotten")
         return
     rows = [
-        {"number": at, "title": book.title, "percent": round(100 * book.share), "path": book.path}
-        for at, book in enumerate(places.listed(), 1)
+        {
+            "number": number,
+            "title": book.title,
+            "percent": round(100 * book.share),
+            "path": str(book.path),
+        }
+        for number, book in enumerate(places.listed(), 1)
     ]
-    if json:
-        print_json([{**row, "path": str(row["path"])} for row in rows])
-        return
-    for row in rows:
-        say("{number}: {title}, {percent} percent ({path})".format(**row))
-    if not rows:
-        say("no books yet; vbraille read FILE begins one")
+    lines = ["{number}: {title}, {percent} percent ({path})".format(**row) for row in rows]
+    show(lines or ["no books yet; vbraille read FILE begins one"], rows, as_json=json)

@@ -7,8 +7,9 @@ import click
 from vbraille.cli import options
 
 
-@click.command(cls=options.Command, epilog='Example: eval "$(vbraille completion bash)"')
-@click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
+@options.command(
+    "completion bash", click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
+)
 @click.pass_context
 def command(ctx: click.Context, shell: str) -> None:
     """It completes commands, options and values."""

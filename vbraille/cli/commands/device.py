@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from vbraille.cli import options
-from vbraille.cli.printing import print_json, print_rows, say
+from vbraille.cli.printing import print_json, say, show
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,8 +26,7 @@ def command() -> None:
     """A device is named by its spec, such as serial:/dev/ttyACM0 or latero:HOST."""
 
 
-@command.command("list", epilog="Example: vbraille device list")
-@options.json
+@command.action("device list", options.json, name="list")
 def list_ports(json: bool) -> None:
     """List the serial ports, and the kinds of devices that drivers are installed for."""
     from serial.tools import list_ports as ports
@@ -44,22 +43,17 @@ def list_ports(json: bool) -> None:
         for port in sorted(ports.comports())
     ]
     kinds = [{"kind": kind, "module": module} for kind, module in drivers()]
-    if json:
-        print_json({"ports": rows, "drivers": kinds})
-        return
+    lines = [] if rows else ["port: none; plug the device in"]
     for row in rows:
-        named = [row["name"] or "no name", row["id"] and f"id {row['id']}"]
-        number = row["serial_number"] and f"serial number {row['serial_number']}"
-        say(f"port: {', '.join(filter(None, [row['device'], *named, number]))}")
-    if not rows:
-        say("port: none; plug the device in")
-    for kind in kinds:
-        say(f"driver: {kind['kind']}, of {kind['module']}")
+        named = f"port: {row['device']}, {row['name'] or 'no name'}"
+        named += f", id {row['id']}" if row["id"] else ""
+        number = row["serial_number"]
+        lines.append(f"{named}, serial number {number}" if number else named)
+    lines += [f"driver: {kind['kind']}, of {kind['module']}" for kind in kinds]
+    show(lines, {"ports": rows, "drivers": kinds}, as_json=json)
 
 
-@command.command(epilog="Example: vbraille device info serial:/dev/ttyACM0")
-@_spec
-@options.takes(_model, options.json)
+@command.action("device info serial:/dev/ttyACM0", _spec, _model, options.json)
 def info(spec: str, model: str | None, json: bool) -> None:
     """Describe a device."""
     with _opened(spec, model) as device:
@@ -68,13 +62,12 @@ def info(spec: str, model: str | None, json: bool) -> None:
             display = asdict(device.display)
             print_json({"display": display, "particulars": told and asdict(told)})
             return
-        print_rows([_described(device)], as_json=False)
+        for label, value in _described(device).items():
+            say(f"{label}: {value}")
         _say_calibration(device)
 
 
-@command.command(epilog="Example: vbraille device check serial:/dev/ttyACM0 --model stress2")
-@_spec
-@options.takes(_model, options.json)
+@command.action("device check serial:/dev/ttyACM0 --model stress2", _spec, _model, options.json)
 def check(spec: str, model: str | None, json: bool) -> int:
     """Measure whether a person can read on a device.
 
@@ -103,14 +96,13 @@ def check(spec: str, model: str | None, json: bool) -> int:
     return 0 if fit else 1
 
 
-@command.command(epilog="Example: vbraille device calibrate serial:/dev/ttyACM0")
-@_spec
-@options.takes(
-    _model,
+@command.action(
+    "device calibrate serial:/dev/ttyACM0",
+    _spec, _model,
     options.option("--show", is_flag=True, help="Print the calibration, and do nothing else."),
     options.option("--forget", is_flag=True, help="Delete the calibration."),
     options.json(help="With --show: print JSON."),
-)
+)  # fmt: skip
 def calibrate(spec: str, model: str | None, show: bool, forget: bool, json: bool) -> None:
     """Swing each actuator in turn, and set its gain by keys."""
     from vbraille.devices.calibration import even_gains, load, name_of, path_of

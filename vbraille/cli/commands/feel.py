@@ -9,9 +9,9 @@ import click
 from vbraille.cli import options
 
 
-@click.command(cls=options.Command, epilog="Example: vbraille feel house.scene --monitor")
-@options.file
-@options.takes(
+@options.command(
+    "feel house.scene --monitor",
+    options.file,
     options.device, options.hand(default="still", show_default=True),
     options.model(group=options.FIRST),
     options.option("--say-entering", is_flag=True,
@@ -22,13 +22,12 @@ from vbraille.cli import options
                    help="Show numbers for labels that do not fit; entering says the texts."),
     options.option("--y", type=options.Number(0), metavar="MM",
                    help="Height of the line to feel, on a device of one axis."),
-    options.speech, options.monitor, options.cues, options.also, options.rate, options.seed,
-    options.host, options.port, options.settings,
+    *options.AROUND,
 )  # fmt: skip
 @click.pass_context
 def command(ctx: click.Context, **chosen: Any) -> None:
     """At a terminal, h says the keys."""
-    from vbraille.cli.exploring import equipped, find_model, say_summary
+    from vbraille.cli.exploring import equipped, say_summary
     from vbraille.cli.printing import say
     from vbraille.errors import InputError
     from vbraille.pictures.keys import keyed
@@ -44,25 +43,32 @@ def command(ctx: click.Context, **chosen: Any) -> None:
         loaded, key = keyed(loaded, asked.style)
         labels = [one.text for one in key.scene.elements if isinstance(one, Label)]
         say(f"key: {'; '.join(labels)}")
-    with equipped(ctx, asked.display, hand=chosen["hand"]) as equipment:
-        device, attended = equipment.device, equipment.keyboard.attached
+    with equipped(ctx, asked.display) as equipment:
+        attended, y_mm = equipment.keyboard.attached, chosen["y"]
         still = chosen["hand"] == "still" and is_simulated(chosen["device"])
         if still and not (attended or chosen["monitor"]):
             raise InputError(
                 "nothing would move the hand: start vbraille feel at a terminal, with --monitor, "
                 "or with a hand such as --hand wide"
             )
-        model = find_model(ctx, device, asked)
-        _check(loaded, model.display, chosen["y"], check_fits)
-        equipment.start(ctx, model, language=loaded.scene.language or "en")
-        signals = equipment.signals
+        model = equipment.find(asked)
+        name, height_mm = model.display.name, loaded.scene.canvas.height_mm
+        check_fits(loaded.scene, model.display)
+        if y_mm is not None and model.display.height_mm:
+            raise InputError(f"--y is for a device of one axis; {name} has two; leave it out")
+        if y_mm is not None and y_mm > height_mm:
+            raise InputError(
+                f"--y {y_mm:g} mm is below the picture, which is {height_mm:g} mm high"
+            )
+        equipment.start(model, language=loaded.scene.language or "en")
+        sound = (output.sound for output in equipment.outputs if hasattr(output, "sound"))
         picture = Picture(
             loaded,
-            device,
+            equipment.device,
             equipment.outputs,
-            y_mm=chosen["y"],
+            y_mm=y_mm,
             saying=2 if chosen["sounds"] else int(chosen["say_entering"]),
-            sound=None if signals is None else signals.sound,
+            sound=next(sound, None),
             goes=not still,
             attended=attended,
             zoom=chosen["zoom"],
@@ -70,17 +76,5 @@ def command(ctx: click.Context, **chosen: Any) -> None:
         picture.begin()
         for note in loaded.notes:
             say(f"note: {note}", aside=True)
-        equipment.explore(ctx, picture)
-    say_summary(device)
-
-
-def _check(loaded: Any, display: Any, y_mm: float | None, check_fits: Any) -> None:
-    """Refuse a picture that the carriage cannot go over, or a height that it does not need."""
-    from vbraille.errors import InputError
-
-    check_fits(loaded.scene, display)
-    height_mm = loaded.scene.canvas.height_mm
-    if y_mm is not None and display.height_mm:
-        raise InputError(f"--y is for a device of one axis; {display.name} has two; leave it out")
-    if y_mm is not None and y_mm > height_mm:
-        raise InputError(f"--y {y_mm:g} mm is below the picture, which is {height_mm:g} mm high")
+        equipment.explore(picture)
+    say_summary(equipment.device)

@@ -7,22 +7,17 @@ from typing import Any
 import click
 
 from vbraille.cli import options
-from vbraille.cli.printing import print_json, say
+from vbraille.cli.printing import show
 
 
-@click.command(cls=options.Command, epilog="Example: vbraille keys --keys nvda")
-@options.takes(
+@options.command(
+    "keys --keys nvda",
     options.keys,
-    options.option(
-        "--of",
-        type=click.Choice(["book", "picture", "game", "tuning", "screen"]),
-        default="book",
-        show_default=True,
-        help="What the keys are for.",
-    ),
+    options.option("--of", type=click.Choice(["book", "picture", "game", "tuning", "screen"]),
+                   default="book", show_default=True, help="What the keys are for."),
     options.json,
     options.settings,
-)
+)  # fmt: skip
 @click.pass_context
 def command(ctx: click.Context, keys: str, of: str, json: bool, **_: Any) -> None:
     """With your own keys from the settings file."""
@@ -40,8 +35,7 @@ def command(ctx: click.Context, keys: str, of: str, json: bool, **_: Any) -> Non
         }
         for each in table(where)
     ]
-    if json:
-        print_json(rows)
-        return
-    for row in rows:
-        say(f"{' or '.join(row['keys']) or 'no key'}: {row['help']} ({row['command']})")
+    lines = (
+        f"{' or '.join(row['keys']) or 'no key'}: {row['help']} ({row['command']})" for row in rows
+    )
+    show(lines, rows, as_json=json)

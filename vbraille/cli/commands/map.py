@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -13,53 +14,42 @@ from vbraille.cli.printing import say
 _ANSWERS = "Pictures that answer the hand"
 
 
-class Place(click.ParamType):
-    """Numbers with commas between, such as X,Y; as a tuple."""
-
-    name = "numbers"
-
-    def __init__(self, *counts: int, most: float = 1e6) -> None:
-        self.counts, self.most = counts, most
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Convert a text."""
-        number = options.Number(-self.most, self.most)
-        parts = str(value).split(",")
-        if len(parts) not in self.counts:
-            count = " or ".join(map(str, self.counts))
-            self.fail(f"{value!r} is not {count} numbers with commas between", param, ctx)
-        return tuple(number.convert(part, param, ctx) for part in parts)
+def _numbers(text: str, counts: tuple[int, ...], most: float) -> tuple[float, ...]:
+    number = options.Number(-most, most)
+    parts = text.split(",")
+    if len(parts) not in counts:
+        count = " or ".join(map(str, counts))
+        raise click.BadParameter(f"{text!r} is not {count} numbers with commas between")
+    return tuple(number.convert(part, None, None) for part in parts)
 
 
-class SwitchStates(click.ParamType):
-    """States of switches such as 1=2,3=1; from 1, as a dictionary of states from 0."""
-
-    name = "states"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Convert a text."""
-        states = {}
-        for pair in str(value).split(","):
-            key, _, state = pair.partition("=")
-            if not (key in "12345678" and state in "12345678" and key and state):
-                self.fail(f"{value!r} is not a list of switch states such as 1=2", param, ctx)
-            states[int(key)] = int(state) - 1
-        return states
+def _pose(text: str) -> tuple[float, ...]:
+    """Place of the array, such as X,Y or X,Y,θ."""
+    return _numbers(text, (2, 3), 1e6)
 
 
-@click.command(
-    cls=options.Command,
-    epilog="Example: vbraille map texts/scenes/gallery/layers.scene --out layers.png",
-)
-@options.file
-@options.takes(
+def _velocity(text: str) -> tuple[float, ...]:
+    """Velocity of the hand, X,Y."""
+    return _numbers(text, (2,), 1000)
+
+
+def _states(text: str) -> dict[int, int]:
+    """States of switches such as 1=2,3=1, from 1; as states from 0 by keys."""
+    if not re.fullmatch(r"[1-8]=[1-8](,[1-8]=[1-8])*", text):
+        raise click.BadParameter(f"{text!r} is not a list of switch states such as 1=2")
+    return {int(part[0]): int(part[2]) - 1 for part in text.split(",")}
+
+
+@options.command(
+    "map texts/scenes/gallery/layers.scene --out layers.png",
+    options.file,
     options.out(required=True, help="Picture to write: .png, .svg, .pdf, .csv or .gif."),
     options.force,
     options.option("--outline", is_flag=True, help="Draw black outlines, true to scale, for swell "
                    "paper."),
     options.option("--key", is_flag=True, help="Draw numbers for labels that do not fit, and the "
                    "key in a second file."),
-    options.option("--array", type=Place(2, 3), metavar="X,Y[,θ]", help="Draw the array with its "
+    options.option("--array", type=_pose, metavar="X,Y[,θ]", help="Draw the array with its "
                    "centre here, in mm and degrees."),
     options.model(group=options.FIRST, default="stress2-8x8", help="Display whose array is drawn."),
     options.option("--rulers", is_flag=True, help="Draw rulers in mm."),
@@ -67,9 +57,9 @@ class SwitchStates(click.ParamType):
                    "swing: a .gif, or numbered files."),
     options.option("--resolution", type=options.Number(0.01, 1000), metavar="N",
                    help="Pixels a mm."),
-    options.option("--velocity", type=Place(2, most=1000), metavar="X,Y", default="0,0",
+    options.option("--velocity", type=_velocity, metavar="X,Y", default="0,0",
                    help="Velocity of the hand in mm/s.", group=_ANSWERS),
-    options.option("--switch", type=SwitchStates(), metavar="K=N",
+    options.option("--switch", type=_states, metavar="K=N",
                    help="State N of the switch of key K.", group=_ANSWERS),
     options.option("--signal", metavar="NAME", group=_ANSWERS,
                    help="Draw how this signal answers to the hand's velocity."),

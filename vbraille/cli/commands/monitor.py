@@ -20,9 +20,11 @@ _HDF5 = b"\x89HDF\r\n\x1a\n"
 _LOOK_S = 0.5
 
 
-@click.command(cls=options.Command, epilog="Example: vbraille monitor reading.h5")
-@click.argument("file", type=click.Path(path_type=Path))
-@options.takes(options.host(group=options.FIRST), options.port(group=options.FIRST))
+@options.command(
+    "monitor reading.h5",
+    click.argument("file", type=click.Path(path_type=Path)),
+    options.host(group=options.FIRST), options.port(group=options.FIRST),
+)  # fmt: skip
 def command(file: Path, host: str | None, port: int | None) -> None:
     """FILE is what vbraille render wrote, or a session. Ctrl-C ends it."""
     from vbraille.live.server import Server, open_browser

@@ -11,11 +11,9 @@ from vbraille.cli.printing import Progress, say
 from vbraille.errors import needing_extras
 
 
-@click.command(
-    cls=options.Command, epilog="Example: vbraille pilot letters --participants 20 --workers 2"
-)
-@click.argument("protocol")
-@options.takes(
+@options.command(
+    "pilot letters --participants 20 --workers 2",
+    click.argument("protocol"),
     options.option("--participants", type=options.whole(1, 500), required=True, metavar="N",
                    help="Number of simulated people."),
     options.out(metavar="DIR", help="Directory for the sessions and the report."),

@@ -18,13 +18,10 @@ if TYPE_CHECKING:
 _LINES = 6  # lines of a page, unless told otherwise
 
 
-@click.command(
-    cls=options.Command,
-    epilog="Example: vbraille plot page book.txt --lines 1-4 --x 120 --out page.png",
-)
-@click.argument("kind", type=click.Choice(["deflection", "mapping", "wave", "strain", "page"]))
-@options.optional_file
-@options.takes(
+@options.command(
+    "plot page book.txt --lines 1-4 --x 120 --out page.png",
+    click.argument("kind", type=click.Choice(["deflection", "mapping", "wave", "strain", "page"])),
+    options.optional_file,
     options.out(metavar="F.png|F.svg", help="Picture to write; vbraille-KIND.png if not given."),
     options.force,
     options.csv(help="Print the numbers as CSV instead."),
@@ -95,7 +92,8 @@ def _table(ctx: click.Context, kind: str, chosen: dict[str, Any]) -> FigureTable
         return series.mapping(model.style, **_letter(ctx, chosen["letter"]), model=model)
     page = Page(ctx, build_book(ctx), model)
     lines = list(islice(page.lines(), None if page.last else _LINES))
-    page.say_end()
+    for sentence in page.remarks():
+        say(sentence, aside=True)
     x_mm = chosen["x"] + model.display.span_mm / 2
     return series.page(lines, model, x_mm=x_mm, first=page.first)
 

@@ -23,15 +23,12 @@ _OF_TEXT = (
 )  # fmt: skip
 
 
-@click.command(cls=options.Command, epilog="Example: vbraille read book.epub --speech")
-@options.optional_file
-@options.takes(
-    options.device, options.hand, options.language, options.grade, options.lines, options.echo,
-    options.speech, options.keys, options.monitor, options.profile,
-    *options.TRANSLATION[2:], *options.FEEL, options.straying, options.band, options.model,
-    options.travel, options.height, options.cells, options.rate, options.seed, options.cues,
-    options.also, options.advance, options.host, options.port, options.no_places,
-    options.settings,
+@options.command(
+    "read book.epub --speech",
+    options.optional_file, options.device, options.hand, options.language, options.grade,
+    options.lines, options.echo, options.keys, options.profile,
+    *options.TRANSLATION[2:], *options.FEEL, options.model, *options.CARRIAGE, options.cells,
+    options.advance, options.no_places, *options.AROUND,
 )  # fmt: skip
 @click.pass_context
 def command(ctx: click.Context, **_chosen: Any) -> None:
@@ -50,47 +47,30 @@ def read(ctx: click.Context, number: int = 1) -> None:
     VbrailleError
         If it cannot be read, or the device is gone.
     """
-    from vbraille.cli.build import build_book, build_model, display_name
-    from vbraille.cli.exploring import equipped, find_model, say_summary
+    from vbraille.cli.build import build_book, build_model, save_style, say_width
+    from vbraille.cli.exploring import equipped, say_summary
     from vbraille.cli.printing import say
-    from vbraille.cli.settings import save_profile, settings_of
-    from vbraille.knobs import profile_values
     from vbraille.reading.places import Places, places_path
     from vbraille.reading.reader import Reader
     from vbraille.render import MODELS
-    from vbraille.wording import count
 
     chosen = ctx.params
-    places = Places(
-        None if chosen["no_places"] else places_path(), lambda said: say(said, aside=True)
-    )
+    kept_in = None if chosen["no_places"] else places_path()
+    places = Places(kept_in, lambda said: say(said, aside=True))
     if chosen["file"] is None:
-        book_read = places.numbered(number)
-        chosen["file"] = str(book_read.path)
-    file = chosen["file"]
-    asked_model = MODELS[chosen["model"] or "stress2"]
-    wanted = build_model(ctx, asked_model, asked_model.style.geometry.travel_mm)
-    wanted_display = wanted.on(wanted.style.geometry, chosen["rate"])
+        chosen["file"] = str(places.numbered(number).path)
+    usual = MODELS[chosen["model"] or "stress2"]
+    wanted = build_model(ctx, usual, usual.style.geometry.travel_mm)
+    display = wanted.on(wanted.style.geometry, chosen["rate"])
     echo = chosen["echo"] or ("none" if sys.stdout.isatty() else "both")
-    with equipped(
-        ctx, wanted_display, hand=chosen["hand"], echo=echo, beside=file == "-"
-    ) as equipment:
+    with equipped(ctx, display, echo) as equipment:
         device = equipment.device
         device.launch()
-        kept = _kept(places, file)
+        kept = _kept(places, chosen["file"])
         _take_options(ctx, kept)
-        book = build_book(ctx, file)
-        model = find_model(ctx, device, wanted)
-        spoken = _spoken(chosen["language"], book)
-        equipment.start(ctx, model, language=spoken, table=book.table)
-
-        def save(style):
-            settings = settings_of(ctx)
-            save_profile(
-                settings.path, settings.profile, display_name(model), profile_values(style)
-            )
-            return f"profile {settings.profile}: saved"
-
+        book = build_book(ctx)
+        model = equipment.find(wanted)
+        equipment.start(model, language=_spoken(chosen["language"], book), table=book.table)
         reader = Reader(
             book,
             device,
@@ -103,14 +83,13 @@ def read(ctx: click.Context, number: int = 1) -> None:
             by_hand=chosen["advance"] == "return",
             echo=echo,
             figures=_figures(ctx, book, model.style),
-            save=save,
-            changed=_changes(file, lambda: build_book(ctx, file)),
+            save=lambda style: save_style(ctx, model, style),
+            changed=_changes(chosen["file"], lambda: build_book(ctx)),
         )
-        written = "braille as it is" if book.table is None else book.table.said
-        say(f"line width: {count(reader.layout.width, 'cell')}, {written}", aside=True)
+        say_width(reader.layout.width, book)
         reader.begin()
         try:
-            equipment.explore(ctx, reader, own=True)
+            equipment.explore(reader, own=True)
         finally:
             reader.keep()
     say_summary(device, f"lines {reader.lines_read}", speed=True)

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import click
 
 from vbraille.cli import options
-from vbraille.cli.printing import print_json, say
+from vbraille.cli.printing import say, show
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from vbraille.pictures.checking import ElementReport, SceneReport
     from vbraille.pictures.loading import LoadedScene
 
@@ -20,10 +22,8 @@ def command() -> None:
     """Tactile pictures are scenes, drawings in SVG, or files of OpenLatero."""
 
 
-@command.command(epilog="Example: vbraille scene check texts/scenes/house.scene")
-@options.file
-@options.json
-def check(file: str, json: bool) -> int:
+@command.action("scene check texts/scenes/house.scene", options.file, options.json)
+def check(file: str, json: bool) -> None:
     """List the elements of a picture, and what is hard to feel."""
     from dataclasses import asdict
 
@@ -33,32 +33,27 @@ def check(file: str, json: bool) -> int:
 
     loaded = load_scene(file, MODELS["stress2"].style)
     report = check_scene(loaded)
-    if not json:
-        _print(loaded, report)
-        return 0
     scene = loaded.opened.written
     elements = [
         {**asdict(one), "box": None if one.box is None or one.box.is_empty else one.box._asdict()}
         for one in report.elements
     ]
-    print_json(
-        {
-            "title": scene.title,
-            "description": scene.description,
-            "language": scene.language,
-            "canvas": {"width_mm": scene.canvas.width_mm, "height_mm": scene.canvas.height_mm},
-            "operation": scene.operation,
-            **asdict(report),
-            "elements": elements,
-            "file": loaded.notes,
-        }
-    )
-    return 0
+    found = {
+        "title": scene.title,
+        "description": scene.description,
+        "language": scene.language,
+        "canvas": {"width_mm": scene.canvas.width_mm, "height_mm": scene.canvas.height_mm},
+        "operation": scene.operation,
+        **asdict(report),
+        "elements": elements,
+        "file": loaded.notes,
+    }
+    show(_lines(loaded, report), found, as_json=json)
 
 
-@command.command(epilog="Example: vbraille scene convert umbrella.gen --out umbrella.scene")
-@options.file
-@options.takes(
+@command.action(
+    "scene convert umbrella.gen --out umbrella.scene",
+    options.file,
     options.out(required=True, metavar="NEW", help="Scene file to write."),
     options.option("--as-shown", is_flag=True, help="Convert what OpenLatero shows, where that "
                    "differs from its file."),
@@ -80,7 +75,7 @@ def convert(file: str, out: str, as_shown: bool, force: bool) -> None:
     say(f"written: {path}")
 
 
-@command.command(epilog="Example: vbraille scene schema > scene.schema.json")
+@command.action("scene schema > scene.schema.json")
 def schema() -> None:
     """Print the JSON Schema of scene files, for editors."""
     from vbraille.scene.schema import schema_text
@@ -88,25 +83,21 @@ def schema() -> None:
     click.echo(schema_text(), nl=False)
 
 
-def _print(loaded: LoadedScene, report: SceneReport) -> None:
-    """Print a report, a line for each thing."""
+def _lines(loaded: LoadedScene, report: SceneReport) -> Iterator[str]:
+    """A line for each thing of a report."""
     scene = loaded.opened.written
     for label, value in (("title", scene.title), ("description", scene.description)):
         if value:
-            say(f"{label}: {' '.join(value.split())}")
-    say(f"canvas: {scene.canvas.width_mm:g} × {scene.canvas.height_mm:g} mm")
-    say(f"language: {scene.language}")
-    say(f"elements: {len(report.elements)}, combined by {scene.operation}")
-    for kind, number in report.kinds.items():
-        say(f"{kind}: {number}")
-    say(f"different textures: {report.textures}")
-    for element in report.elements:
-        say(_described(element))
-    remarks = [f"file: {note}" for note in loaded.notes]
-    remarks += [f"advice: {sentence}" for sentence in report.advice]
-    for remark in remarks:
-        say(remark)
-    say(f"remarks: {len(remarks) or 'none'}")
+            yield f"{label}: {' '.join(value.split())}"
+    yield f"canvas: {scene.canvas.width_mm:g} × {scene.canvas.height_mm:g} mm"
+    yield f"language: {scene.language}"
+    yield f"elements: {len(report.elements)}, combined by {scene.operation}"
+    yield from (f"{kind}: {number}" for kind, number in report.kinds.items())
+    yield f"different textures: {report.textures}"
+    yield from map(_described, report.elements)
+    yield from (f"file: {note}" for note in loaded.notes)
+    yield from (f"advice: {sentence}" for sentence in report.advice)
+    yield f"remarks: {len(loaded.notes) + len(report.advice) or 'none'}"
 
 
 def _described(element: ElementReport) -> str:

@@ -11,20 +11,18 @@ import click
 from vbraille.cli import options
 
 
-@click.command(cls=options.Command, epilog="Example: vbraille screen --device serial:/dev/ttyACM0")
-@options.takes(
-    options.device, options.hand, options.model(group=options.FIRST),
+@options.command(
+    "screen --device serial:/dev/ttyACM0",
+    *options.HAND,
     options.option("--listen", metavar="PLACE", help="Socket for BRLTTY: a path, or HOST:PORT."),
     options.option("--connect", metavar="PLACE", help="Socket at which BRLTTY listens."),
-    options.echo, options.speech, options.monitor, options.profile, *options.FEEL, options.straying,
-    options.band, options.travel, options.height, options.rate, options.seed, options.cues,
-    options.also, options.host, options.port, options.settings,
+    options.echo, options.profile, *options.FEEL, *options.CARRIAGE, *options.AROUND,
 )  # fmt: skip
 @click.pass_context
 def command(ctx: click.Context, **chosen: Any) -> None:
     """The line that BRLTTY shows is under the hand. At a terminal, h says the keys."""
     from vbraille.cli.build import build_model
-    from vbraille.cli.exploring import equipped, find_model, say_summary
+    from vbraille.cli.exploring import equipped, say_summary
     from vbraille.reading.brltty import Port
     from vbraille.reading.screen import Screen
     from vbraille.render import MODELS
@@ -33,18 +31,16 @@ def command(ctx: click.Context, **chosen: Any) -> None:
     wanted = build_model(ctx, usual, usual.style.geometry.travel_mm)
     folder = os.environ.get("XDG_RUNTIME_DIR") or Path.home()
     place = chosen["connect"] or chosen["listen"] or f"{folder}/vbraille-screen"
-    echo = chosen["echo"] or "none"
     display = wanted.on(wanted.style.geometry, chosen["rate"])
-    with equipped(ctx, display, hand=chosen["hand"], echo=echo) as equipment:
+    with equipped(ctx, display, chosen["echo"] or "none") as equipment:
         port = Port(place, connects=bool(chosen["connect"]))
         equipment.stack.callback(port.close)
         device = equipment.device
-        model = find_model(ctx, device, wanted)
-        equipment.start(ctx, model)
+        model = equipment.find(wanted)
+        equipment.start(model)
         mode = "server" if chosen["connect"] else "client"
         equipment.say(f"start BRLTTY: brltty -b vr -d {mode}:{place}")
         if not port.local:
-            equipment.say(f"{place}: any program that reaches it may show text and hear your keys")
-        screen = Screen(port, device, equipment.outputs, model.style, equipment.keyboard)
-        equipment.explore(ctx, screen)
+            equipment.say(f"{place}: any program that reaches it may show text and hear keys")
+        equipment.explore(Screen(port, device, equipment.outputs, model.style, equipment.keyboard))
     say_summary(device)

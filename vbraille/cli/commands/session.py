@@ -3,37 +3,22 @@
 from __future__ import annotations
 
 import sys
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from vbraille.cli import options
-from vbraille.cli.printing import print_json, say
+from vbraille.cli.printing import say, show
 from vbraille.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from vbraille.sessions.planning.protocol import Protocol
     from vbraille.sessions.running.answers import Typed
     from vbraille.sessions.session import Session
-
-
-class _Field(click.ParamType):
-    """An answer to a question about the participant, as NAME=VALUE."""
-
-    name = "NAME=VALUE"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Split a text."""
-        if isinstance(value, tuple):
-            return value
-        name, equals, answer = value.partition("=")
-        if not equals:
-            self.fail(f"{value!r} is not NAME=VALUE", param, ctx)
-        return name, answer
 
 
 _file = click.argument("path", type=click.Path(), metavar="FILE")
@@ -70,9 +55,7 @@ def command() -> None:
     """A session is one file, which keeps the protocol, the plan, every answer and every frame."""
 
 
-@command.command()
-@click.argument("name", required=False)
-@options.takes(options.json)
+@command.action("session protocols", click.argument("name", required=False), options.json)
 def protocols(name: str | None, json: bool) -> None:
     """List the protocols that come with the program, or print one."""
     from vbraille.sessions.planning.loading import FOLDER, OWN_FILE, load_protocol, shipped
@@ -83,44 +66,38 @@ def protocols(name: str | None, json: bool) -> None:
         click.echo(content, nl=False)
         return
     loaded = [load_protocol(each) for each in shipped()]
-    if json:
-        print_json([{"name": p.name, "title": p.title, "display": p.model} for p in loaded])
-        return
-    for protocol in loaded:
-        say(f"{protocol.name}: {protocol.title}, {protocol.display_model.title}")
+    rows = [{"name": p.name, "title": p.title, "display": p.model} for p in loaded]
+    lines = (f"{p.name}: {p.title}, {p.display_model.title}" for p in loaded)
+    show(lines, rows, as_json=json)
 
 
-@command.command()
-@_protocol
-@options.takes(
+@command.action(
+    "session plan letters --participant P07",
+    _protocol,
     *_PLAN,
     options.option("--brf", is_flag=True, help="Print the strings in ASCII braille."),
     options.json,
 )
 def plan(protocol: str, brf: bool, json: bool, **given: Any) -> None:
     """Print the order of a session, and how long it takes."""
-    from vbraille.sessions.planning.plan import plan_lines
+    from vbraille.sessions.planning.plan import plan_lines, to_brf
     from vbraille.sessions.session import plan_session
 
     loaded, planned = plan_session(protocol, **given)
     if given["seed"] is None:
         say(f"seed: {planned.seed}", aside=True)
-    if json:
-        print_json(planned)
-    elif brf:
-        from vbraille.sessions.planning.plan import to_brf
-
+    if brf:
         click.echo(to_brf(loaded, planned), nl=False)
     else:
-        for line in plan_lines(loaded, planned):
-            say(line)
+        show(plan_lines(loaded, planned), planned, as_json=json)
 
 
-@command.command(epilog="Example: vbraille session run letters --participant P07 --seed 42")
-@_protocol
-@options.takes(
+@command.action(
+    "session run letters --participant P07 --seed 42",
+    _protocol,
     *_PLAN,
-    options.option("--field", "fields", type=_Field(), multiple=True,
+    options.option("--field", "fields", type=options.pair, multiple=True,
+                   metavar="NAME=VALUE",
                    help="Answer to a question about the participant."),
     options.option("--out", type=click.Path(), metavar="FILE",
                    help="File of the session; PARTICIPANT-PROTOCOL.session by default."),
@@ -161,9 +138,7 @@ def run(protocol: str, fields: tuple[tuple[str, str], ...], out: str | None, ano
             raise
 
 
-@command.command()
-@_file
-@options.takes(*_CONDUCT)
+@command.action("session resume P07-letters.session", _file, *_CONDUCT)
 def resume(path: str, speech: bool, **given: Any) -> None:
     """Go on with a session where it was stopped, or the machine failed."""
     from vbraille.sessions.session import Session
@@ -186,9 +161,9 @@ def _conduct(
     session.run(say=tell, monitor=monitor, before_rest=EAR.close, **chosen)
 
 
-@command.command()
-@_file
-@options.takes(
+@command.action(
+    "session check P07-letters.session",
+    _file,
     options.option("--expect", metavar="SUM", help="Checksum that was noted earlier."),
     options.option("--salvage", type=click.Path(), metavar="NEW",
                    help="Write what can be read into a new file."),
@@ -203,20 +178,17 @@ def check(path: str, expect: str | None, salvage: str | None, json: bool) -> int
             say(line)
         return 0
     faults = checking.check(Path(path), expect or "")
-    if json:
-        print_json({"good": not faults, "faults": faults})
-    else:
-        for fault in faults:
-            say(f"fault: {fault}")
-        if not faults:
-            say("whole: the protocol, the plan, all events and all ticks")
-            say(f"record: {checking.sum_of(Path(path))}")
+    lines = [f"fault: {fault}" for fault in faults]
+    if not faults:
+        lines = ["whole: the protocol, the plan, all events and all ticks"]
+        lines.append(f"record: {checking.sum_of(Path(path))}")
+    show(lines, {"good": not faults, "faults": faults}, as_json=json)
     return 1 if faults else 0
 
 
-@command.command()
-@_files
-@options.takes(
+@command.action(
+    "session export P07-letters.session --out trials.csv",
+    _files,
     options.out,
     options.force,
     options.option("--bids", is_flag=True, help="Add the sessions to a BIDS dataset at --out."),
@@ -256,8 +228,7 @@ def export(paths: tuple[str, ...], out: str | None, force: bool, bids: bool, cod
         say(f"written: {codebook}")
 
 
-@command.command()
-@_files
+@command.action("session methods P07-letters.session", _files)
 def methods(paths: tuple[str, ...]) -> None:
     """Print a paragraph for a paper on what was done."""
     from vbraille.analysis import methods_of
@@ -266,10 +237,12 @@ def methods(paths: tuple[str, ...]) -> None:
         say(line)
 
 
-@command.command()
-@click.argument("participant")
-@click.argument("paths", type=click.Path(), nargs=-1, metavar="[FOLDER]...")
-@options.takes(options.option("--yes", is_flag=True, help="Do not ask."))
+@command.action(
+    "session withdraw P07 sessions",
+    click.argument("participant"),
+    click.argument("paths", type=click.Path(), nargs=-1, metavar="[FOLDER]..."),
+    options.option("--yes", is_flag=True, help="Do not ask."),
+)
 def withdraw(participant: str, paths: tuple[str, ...], yes: bool) -> int:
     """Remove all data of a participant from folders."""
     from vbraille.sessions.record.withdraw import withdrawal
@@ -296,8 +269,11 @@ def withdraw(participant: str, paths: tuple[str, ...], yes: bool) -> int:
     return 1 if left else 0
 
 
-class _typing(ExitStack):  # noqa: N801  (used as a function)
-    """Open the terminal for lines that are typed; gives where they come from, and what speaks.
+@contextmanager
+def _typing(
+    answers: str | None, speech: bool
+) -> Iterator[tuple[Typed | None, Callable[[str], None]]]:
+    """Open the terminal for lines that are typed: where they come from, and what says a sentence.
 
     Parameters
     ----------
@@ -306,34 +282,30 @@ class _typing(ExitStack):  # noqa: N801  (used as a function)
     speech
         Whether all is spoken.
     """
-
-    def __init__(self, answers: str | None, speech: bool) -> None:
-        super().__init__()
-        self._typed, self._speech = answers in (None, "typed"), speech
-
-    def __enter__(self) -> Any:
-        """Open it."""
-        speak: Callable[[str], None] = _say_nothing
-        if self._speech:
+    with ExitStack() as stack:
+        speak: Callable[[str], object] = bool  # nothing is spoken
+        if speech:
             from vbraille.reading.outputs import Behind, Speech
 
             spoken = Behind("speech", Speech, _say)
-            self.callback(spoken.close)
+            stack.callback(spoken.close)
             speak = spoken.say
-        if not self._typed:
-            return None, lambda sentence: (_say(sentence), speak(sentence))
-        if sys.stdin is not None and sys.stdin.isatty():
+
+        def tell(sentence: str) -> None:
+            _say(sentence)
+            speak(sentence)
+
+        if answers not in (None, "typed"):
+            yield None, tell
+        elif sys.stdin is not None and sys.stdin.isatty():
             from vbraille.cli.typing import TypedKeys
 
-            keys = self.enter_context(TypedKeys(speak))
-            return keys, keys.say
-        from vbraille.sessions.running.answers import Typed
+            keys = stack.enter_context(TypedKeys(speak))
+            yield keys, keys.say
+        else:
+            from vbraille.sessions.running.answers import Typed
 
-        return Typed(), lambda sentence: (_say(sentence), speak(sentence))
-
-
-def _say_nothing(_sentence: str) -> None:
-    """Speak nothing."""
+            yield Typed(), tell
 
 
 def _say(sentence: str) -> None:

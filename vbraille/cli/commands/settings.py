@@ -7,13 +7,13 @@ from typing import Any
 import click
 
 from vbraille.cli import options
-from vbraille.cli.printing import print_json, say
-from vbraille.cli.settings import STYLE, Context, origin, style_options
+from vbraille.cli.printing import say, show
+from vbraille.cli.settings import SHARED, Context, origin, style_options
 
 
-@click.command(cls=options.Command, epilog="Example: vbraille settings --profile evening")
-@click.argument("name", metavar="[COMMAND]", default="read")
-@options.takes(
+@options.command(
+    "settings --profile evening",
+    click.argument("name", metavar="[COMMAND]", default="read"),
     options.profile,
     options.model(group=options.FIRST, help="Display whose part of the profile is shown."),
     options.settings(group=options.FIRST),
@@ -40,39 +40,34 @@ def command(ctx: click.Context, name: str, model: str | None, where: bool, json:
         rows = _rows(inside, model)
     settings = inside.settings
     there = settings.path.exists()
-    if json:
-        kept = {"file": str(settings.path), "there": there, "profile": settings.profile}
-        print_json({**kept, "settings": rows})
-        return
-    say(f"settings file: {settings.path}{'' if there else ' (not there)'}")
-    say(f"profile: {settings.profile}")
-    for row in rows:
-        say(f"{row['name'].replace('_', ' ')}: {_said(row['value'])} ({row['from']})")
+    lines = [f"settings file: {settings.path}{'' if there else ' (not there)'}"]
+    lines.append(f"profile: {settings.profile}")
+    lines += [
+        f"{row['name'].replace('_', ' ')}: {_said(row['value'])} ({row['from']})" for row in rows
+    ]
     for table in ("keys", "buttons"):
         for key, value in settings.table(table).items():
             said = ", ".join(value) if isinstance(value, list) else value
-            say(f"{table} {key}: {said} ({settings.where(table, key)})")
+            lines.append(f"{table} {key}: {said} ({settings.where(table, key)})")
+    kept = {"file": str(settings.path), "there": there, "profile": settings.profile}
+    show(lines, {**kept, "settings": rows}, as_json=json)
 
 
 def _rows(inside: Context, model: str | None) -> list[dict[str, Any]]:
     """Name, value and origin of each option of a command that a settings file may have."""
-    rows = []
-    known = [param for param in inside.command.params if param.name in options.SHARED]
+    known = [param for param in inside.command.params if param.name in SHARED]
     for param in known:
         param.handle_parse_result(inside, {}, [])
-        value = inside.params.get(param.name or "")
-        inside.params[param.name or ""] = value if isinstance(value, str | int | float) else None
-    style = style_options(inside, model or inside.params.get("model") or "stress2")
+    params = inside.params
+    for name, value in params.items():  # what is not given is a mark of click's own
+        params[name] = value if isinstance(value, str | int | float) else None
+    style = style_options(inside, model or params.get("model") or "stress2")
+    rows = []
     for param in known:
         name = param.name or ""
-        row = {
-            "name": name,
-            "value": inside.params[name],
-            "from": origin(inside, param) or "default",
-        }
-        if name in STYLE and name in style:
-            row["value"], row["from"] = style[name]
-        rows.append(row)
+        usual = params[name], origin(inside, param) or "default"
+        value, place = style.get(name, usual)
+        rows.append({"name": name, "value": value, "from": place})
     return rows
 
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import click
-
 from vbraille.cli import options
 from vbraille.cli.printing import say
 
 
-@click.command(cls=options.Command, epilog="Example: vbraille setup")
+@options.command("setup")
 def command() -> None:
     """The first reading then need not wait for it."""
     import time

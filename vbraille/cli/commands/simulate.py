@@ -34,8 +34,8 @@ def command() -> None:
     """It runs until Ctrl-C."""
 
 
-@command.command(epilog="Example: vbraille simulate serial --link ./vb0 --hand slow")
-@options.takes(
+@command.action(
+    "simulate serial --link ./vb0 --hand slow",
     options.model(group=options.FIRST, default="stress2", show_default=True),
     options.hand, options.seed,
     options.option("--link", type=click.Path(), metavar="PATH", help="Link to make to the port."),
@@ -112,8 +112,8 @@ def serial(**chosen: Any) -> None:
         f"dropped {controller.dropped}, trips {controller.trips}")  # fmt: skip
 
 
-@command.command(epilog="Example: vbraille simulate latero --hand slow")
-@options.takes(
+@command.action(
+    "simulate latero --hand slow",
     options.hand, options.seed,
     options.option("--udp-port", type=options.whole(0, 65_535), help="UDP port; 0 for any."),
     options.option("--page-lines", type=options.whole(1, 15), metavar="N", default=1,

@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from vbraille.cli import options
-from vbraille.cli.printing import print_json, say
+from vbraille.cli.printing import say, show
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from vbraille.translate import Block, Source
 
 
-@click.command(cls=options.Command, epilog="Example: vbraille structure book.epub")
-@options.file
-@options.takes(
-    options.json,
+@options.command(
+    "structure book.epub",
+    options.file, options.json,
     options.encoding(group=options.FIRST), options.form(group=options.FIRST),
     options.brf_table(group=options.FIRST), options.keep_lines(group=options.FIRST),
 )  # fmt: skip
@@ -25,28 +24,27 @@ def command(json: bool, **chosen: Any) -> None:
     """Headings with their pages and percentages, then what else is in the book."""
     from vbraille.cli.build import open_text
 
-    source = open_text(chosen, wishes=())
+    source = open_text(chosen)
     found = _outline(source)
     for note in source.notes():
         say(note, aside=True)
-    if json:
-        print_json(found)
-        return
+    show(_lines(found), found, as_json=json)
+
+
+def _lines(found: dict[str, Any]) -> Iterator[str]:
     for what in ("title", "language"):
         if found[what]:
-            say(f"{what}: {found[what]}")
+            yield f"{what}: {found[what]}"
     for heading in found["headings"]:
         page = f"page {heading['page']}, " if heading["page"] else ""
-        title = f"level {heading['level']}: {heading['title']}"
-        say(f"{title}, {page}{heading['percent']:.0f} percent")
-    say(f"headings: {len(found['headings'])}")
+        yield "level {level}: {title}, {0}{percent:.0f} percent".format(page, **heading)
+    yield f"headings: {len(found['headings'])}"
     for what, number in found["counts"].items():
         if number:
-            say(f"{what}: {number}")
+            yield f"{what}: {number}"
     for label, key in (("languages", "languages"), ("not shown", "unshown")):
         if found[key]:
-            named = ", ".join(f"{what} {number}" for what, number in found[key].items())
-            say(f"{label}: {named}")
+            yield f"{label}: {', '.join(f'{what} {n}' for what, n in found[key].items())}"
 
 
 def _outline(source: Source) -> dict[str, Any]:

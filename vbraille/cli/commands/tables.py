@@ -4,36 +4,27 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import click
-
 from vbraille.cli import options
-from vbraille.cli.printing import print_json, say
+from vbraille.cli.printing import show
 
 if TYPE_CHECKING:
     from vbraille.translate import TableInfo
 
 
-@click.command(cls=options.Command, epilog="Example: vbraille tables --language fr")
-@options.takes(options.language, options.json)
+@options.command("tables --language fr", options.language, options.json)
 def command(language: str | None, json: bool) -> None:
     """With a language, only its tables, and which one is taken."""
     from vbraille.translate import find_table, list_tables, tables_of
 
-    tables = list_tables() if language is None else tables_of(language)[1]
+    tables = list(list_tables() if language is None else tables_of(language)[1])
     usual = None if language is None else find_table(language)
-    if json:
-        print_json({"usual": usual, "tables": list(tables)})
-        return
-    if usual is not None:
-        say(f"usual: {usual}")
-    for table in tables:
-        say(_described(table))
+    lines = [f"usual: {usual}"] if usual else []
+    show([*lines, *map(_described, tables)], {"usual": usual, "tables": tables}, as_json=json)
 
 
 def _described(table: TableInfo) -> str:
-    parts = [f"{table.name}: {table.title or 'no title'}"]
-    parts.append(f"language {table.language or 'unknown'}")
-    parts.append(f"grade {table.grade or 'unknown'}")
-    if table.dots:
-        parts.append(f"{table.dots} dots")
-    return ", ".join(parts)
+    dots = f", {table.dots} dots" if table.dots else ""
+    return (
+        f"{table.name}: {table.title or 'no title'}, language {table.language or 'unknown'}, "
+        f"grade {table.grade or 'unknown'}{dots}"
+    )

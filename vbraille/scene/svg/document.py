@@ -186,26 +186,26 @@ def _shown(tokens: Sequence[Any]) -> list[Any]:
 
 
 @dataclass(frozen=True, slots=True)
-class Units:
-    """Sizes that relative lengths are of, in user units.
+class Style:
+    """Values of the properties of an element, and sizes that relative lengths in it are of.
 
     Parameters
     ----------
+    values
+        Values by the names of the properties.
     view
-        Width and height of the viewport around, which percentages are of.
+        Width and height of the viewport around in user units, which percentages are of.
     page
         Width and height of the whole drawing, in pixels.
-    font
-        Size of the letters.
     """
 
+    values: Mapping[str, str]
     view: Point = (1.0, 1.0)
     page: Point = (1.0, 1.0)
-    font: float = 16.0
 
-    def sized(self, style: Mapping[str, str]) -> Units:
-        """Units with the size of the letters that a style has."""
-        return replace(self, font=float(style["font-size"]))
+    def __getitem__(self, name: str) -> str:
+        """Value of a property."""
+        return self.values[name]
 
     @property
     def diagonal(self) -> float:
@@ -239,7 +239,7 @@ class Units:
             return token.value * whole / 100
         unit = getattr(token, "lower_unit", "")
         if unit in _OF_LETTERS:
-            return token.value * self.font * _OF_LETTERS[unit]
+            return token.value * float(self["font-size"]) * _OF_LETTERS[unit]
         if unit in _OF_PAGE:
             return token.value / 100 * (*self.page, *sorted(self.page))[_OF_PAGE[unit]]
         return token.value * _UNITS[unit]
@@ -259,6 +259,9 @@ class Units:
         return sum(terms)
 
 
+_PLAIN = Style({"font-size": "16"})
+
+
 def arguments_of(function: Any) -> list[list[Any]]:
     """Values of a function's arguments, which commas divide."""
     found: list[list[Any]] = [[]]
@@ -272,12 +275,12 @@ def arguments_of(function: Any) -> list[list[Any]]:
 
 def is_length(text: str) -> bool:
     """Tell whether a text is a length of CSS or SVG."""
-    return Units().length(text, 1.0) is not None
+    return _PLAIN.length(text, 1.0) is not None
 
 
 def share_of(text: str) -> float:
     """Opacity, from 0 to 1; 1 if it is not understood."""
-    value = Units().length(text, 1.0)
+    value = _PLAIN.length(text, 1.0)
     return 1.0 if value is None else min(max(value, 0.0), 1.0)
 
 
@@ -287,7 +290,7 @@ def angle_of(text: str) -> float:
     >>> angle_of("0.25turn"), angle_of("40grad"), angle_of("wide")
     (90.0, 36.0, 0.0)
     """
-    return Units().length(text, 0.0) or 0.0
+    return _PLAIN.length(text, 0.0) or 0.0
 
 
 def numbers_of(text: str | None) -> list[float]:
@@ -382,15 +385,15 @@ _TRANSFORMS: dict[str, Callable[..., AffineMap]] = {
 }
 
 
-def transform_of(text: str, units: Units, box: Box) -> AffineMap | None:
+def transform_of(text: str, style: Style, box: Box) -> AffineMap | None:
     """Map of a transform of SVG or CSS; None if it is not understood.
 
     Parameters
     ----------
     text
         The transform as it is written.
-    units, box
-        Sizes that lengths are of, and the box that percentages are of.
+    style, box
+        Style of its element, and the box that percentages are of.
     """
     whole = AffineMap()
     try:
@@ -400,21 +403,21 @@ def transform_of(text: str, units: Units, box: Box) -> AffineMap | None:
             kind = function.lower_name
             tokens = [token for one in arguments_of(function) for token in one]
             wholes = (box[3:] if kind == "translatey" else box[2:]) + (1.0,) * len(tokens)
-            numbers = map(units.number, tokens, wholes)
+            numbers = map(style.number, tokens, wholes)
             whole = whole @ _TRANSFORMS[kind](*numbers)
     except NOT_UNDERSTOOD:
         return None
     return whole
 
 
-def origin_of(text: str, units: Units, box: Box) -> complex | None:
+def origin_of(text: str, style: Style, box: Box) -> complex | None:
     """Place of a transform-origin; None if it is not understood."""
     words = text.split()[:2]
     if words[0] in ("top", "bottom") or words[1:] in (["left"], ["right"]):
         words.reverse()
     words = [*words, "center"][:2]
     x, y = (
-        units.length(_ORIGINS.get(word, word), whole)
+        style.length(_ORIGINS.get(word, word), whole)
         for word, whole in zip(words, box[2:], strict=True)
     )
     return None if x is None or y is None else complex(box[0] + x, box[1] + y)
@@ -496,7 +499,6 @@ def is_paint(text: str) -> bool:
     return text.lower() in words or color_of(text) is not None
 
 
-Style = dict[str, str]
 Declaration = tuple[str, str, bool]  # property, value, and whether it is important
 
 
@@ -536,7 +538,7 @@ _PROPERTIES = {
     "stop-color": ("black", is_paint),
     "overflow": ("visible", ("visible", "hidden", "scroll", "auto")),
 }  # fmt: skip
-INITIAL: Style = {name: value for name, (value, _) in _PROPERTIES.items()}
+INITIAL = {name: value for name, (value, _) in _PROPERTIES.items()}
 _SHORTHANDS = {"marker": ("marker-start", "marker-mid", "marker-end"), "font": ("font-size",)}
 # Attributes of these names are something else than the property.
 _NO_ATTRIBUTES = frozenset(("rotate", "scale", "translate"))
@@ -644,18 +646,8 @@ class StyleSheets:
             if selector.pseudo_element is None:
                 self._matcher.add_selector(selector, declared)
 
-    def of(self, element: Element, above: Mapping[str, str], units: Units) -> Style:
-        """Style of an element.
-
-        Parameters
-        ----------
-        element
-            The element.
-        above
-            Style of the element around it.
-        units
-            Sizes that lengths of its letters are of.
-        """
+    def of(self, element: Element, above: Style) -> Style:
+        """Style of an element in one that has another style."""
         said: list[Declaration] = []
         wrong: list[Declaration] = []
         places = ("x", "y") if name_of(element) in _TEXTS else ()
@@ -681,5 +673,6 @@ class StyleSheets:
                 found[name] = (INITIAL if value == "initial" else INITIAL | inherited)[name]
             else:
                 found[name] = value
-        found["font-size"] = repr(units.length(found["font-size"], units.font) or units.font)
-        return found
+        font = float(above["font-size"])
+        found["font-size"] = repr(above.length(found["font-size"], font) or font)
+        return replace(above, values=found)

@@ -36,8 +36,8 @@ from vbraille.scene.svg.document import (
     PX_MM,
     AffineMap,
     Color,
+    Style,
     StyleSheets,
-    Units,
     about,
     affine,
     angle_of,
@@ -67,7 +67,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from vbraille.scene.patterns import AnyPattern
-    from vbraille.scene.svg.document import Box, Element, Point, Style
+    from vbraille.scene.svg.document import Box, Element, Point
     from vbraille.scene.svg.outlines import Contour, Ring
 
 # Elements that only stand in a drawing to be used, or say something about it.
@@ -103,8 +103,6 @@ class _Place:
     ----------
     matrix
         Map from their coordinates to mm on the canvas.
-    units
-        Sizes that their lengths are of.
     style
         Style of the element around them.
     look
@@ -124,7 +122,6 @@ class _Place:
     """
 
     matrix: AffineMap
-    units: Units
     style: Style
     look: ClassLook | None = None
     strength: float = 1.0
@@ -195,7 +192,7 @@ def read_svg(path: Path, class_looks: Mapping[str, ClassLook] | None = None) -> 
     return FoundScene(scene, lines_of(scene.elements, drawing.made), drawing.warnings())
 
 
-def size_px(root: Element, style: Mapping[str, str], name: str) -> Point:
+def size_px(root: Element, style: Style, name: str) -> Point:
     """Width and height of a drawing, in pixels of 1/96 inch.
 
     Where they are not given as lengths, they are those of the viewBox.
@@ -206,7 +203,7 @@ def size_px(root: Element, style: Mapping[str, str], name: str) -> Point:
         If there is none of these.
     """
     sizes = [
-        None if "%" in text else Units().length(text, 0.0)
+        None if "%" in text else style.length(text, 0.0)
         for text in (style["width"], style["height"])
     ]
     if (view := view_box_of(root.get("viewBox"))) is not None:
@@ -250,9 +247,8 @@ class SvgDrawing:
         for element in root.iter():
             if own_id := element.get("id"):
                 self._ids.setdefault(own_id, element)
-            if name_of(element) == "script":
-                self.note(element, "it is never run, and ignored")
-            if any(str(key).startswith("on") for key in element.keys()):  # noqa: SIM118 - no dict
+            handled = any(str(key).startswith("on") for key in element.keys())  # noqa: SIM118 - no dict
+            if handled or name_of(element) == "script":
                 self.note(element, "its script is never run")
         self._named: set[str] = set()
         self._used: list[Element] = []
@@ -263,18 +259,19 @@ class SvgDrawing:
             self._sheets = StyleSheets(root, self.note)
         except InputError as error:
             raise InputError(f"{name}: {error}") from None
-        self._style = self._sheets.of(root, INITIAL, Units())
+        self._style = self._sheets.of(root, Style(INITIAL))
         self.size_px = size_px(root, self._style, name)
-        self._units = Units(self.size_px, self.size_px)
+        self._initial = Style(INITIAL, self.size_px, self.size_px)
+        self._style = changed(self._initial, values=self._style.values)
 
     def elements(self) -> list[AnyPattern]:
         """Patterns of the whole drawing."""
         if self._style["display"] == "none":
             return []
         # What is beyond the page is kept.
-        style = {**self._style, "overflow": "visible"}
+        style = changed(self._style, values={**self._style.values, "overflow": "visible"})
         strength = share_of(style["opacity"])
-        place = _Place(AffineMap(PX_MM), self._units.sized(style), style, strength=strength)
+        place = _Place(AffineMap(PX_MM), style, strength=strength)
         return self._in_view(self._root, place, self.size_px)
 
     def note(self, element: Element, remark: str) -> None:
@@ -321,7 +318,7 @@ class SvgDrawing:
             inner = fit(view, size, element.get("preserveAspectRatio") or "")
             place = changed(place, matrix=place.matrix @ inner)
             size = view[2:]
-        place = changed(place, units=changed(place.units, view=size))
+        place = changed(place, style=changed(place.style, view=size))
         return [] if place.clip == [] else self._inside(element, place)
 
     def _holds(self, element: Element) -> bool:
@@ -352,7 +349,7 @@ class SvgDrawing:
             picture = '; put the picture into a scene file, as kind = "image"'
             self.note(element, f"it is ignored{picture * (name == 'image')}")
             return []
-        style = self._sheets.of(element, around.style, around.units)
+        style = self._sheets.of(element, around.style)
         look = self._look(element) or around.look
         strength = around.strength * share_of(style["opacity"])
         faint = strength <= LEAST_SHARE and around.cutting is None
@@ -360,7 +357,6 @@ class SvgDrawing:
             return []
         place = changed(
             around,
-            units=around.units.sized(style),
             style=style,
             look=look,
             strength=strength,
@@ -369,13 +365,13 @@ class SvgDrawing:
         for word in _UNFELT:
             if style[word] != "none":
                 self.note(element, f"its {word} is ignored")
-        place = changed(place, matrix=place.matrix @ self._matrix(element, name, place))
+        place = changed(place, matrix=place.matrix @ self._matrix(element, place))
         if place.matrix.scale == 0.0:
             return []  # it is drawn as nothing
         if not place.matrix.scale < _MOST_SCALE:
             self.note(element, f"{TOO_FAR}; it is left out")
             return []
-        place = self._clipped(element, name, place)
+        place = self._clipped(element, place)
         if place.clip == []:
             return []
         title, description = title_of(element), description_of(element)
@@ -384,7 +380,7 @@ class SvgDrawing:
             self.note(element, "another element has the same id, so it is left without")
             own_id = ""
         kept = bool(title or description or own_id) and place.groups < _MOST_NESTED
-        found = self._made(element, name, changed(place, groups=place.groups + kept), sizes)
+        found = self._made(element, changed(place, groups=place.groups + kept), sizes)
         if not found or not kept:
             return found
         self._named.add(own_id)
@@ -395,9 +391,10 @@ class SvgDrawing:
         return self._lined(element, [words])
 
     def _made(
-        self, element: Element, name: str, place: _Place, sizes: tuple[str | None, ...]
+        self, element: Element, place: _Place, sizes: tuple[str | None, ...]
     ) -> list[AnyPattern]:
         """Patterns of an element that is shown, without its title, description and id."""
+        name = name_of(element)
         if name == "use":
             return self._of_use(element, place)
         if name in ("svg", "symbol"):
@@ -409,7 +406,7 @@ class SvgDrawing:
         try:
             if name == "text":
                 return self._of_text(element, place)
-            return self._of_shape(element, name, place)
+            return self._of_shape(element, place)
         except ValueError as error:
             self.note(element, f"{error}; it is left out")
             return []
@@ -425,7 +422,7 @@ class SvgDrawing:
             self.note(element, "a text does not cut; it is ignored")
             return []
         lines: list[_Line] = []
-        self._gather(element, place.style, place.units, lines)
+        self._gather(element, place.style, lines)
         along = cmath.rect(1.0, cmath.phase(place.matrix.p + place.matrix.q))
         down = along * 1j
         before: complex | None = None
@@ -451,21 +448,21 @@ class SvgDrawing:
             found += self._lined(line.element, [label])
         return found
 
-    def _gather(self, element: Element, style: Style, units: Units, lines: list[_Line]) -> None:
+    def _gather(self, element: Element, style: Style, lines: list[_Line]) -> None:
         """Add the lines of a text or a part of it, which begins one where it has a place."""
         before = lines[-1].place if lines else 0j
-        start = self._start_of(element, units, before)
+        start = self._start_of(element, style, before)
         if start is not None or not lines:
             lines.append(_Line(element, style, start or 0j))
         lines[-1].text += element.text or ""
         for child in element:
             if name_of(child) in _PARTS:
-                inner = self._sheets.of(child, style, units)
+                inner = self._sheets.of(child, style)
                 if inner["display"] != "none" and inner["visibility"] != "hidden":
-                    self._gather(child, inner, units.sized(inner), lines)
+                    self._gather(child, inner, lines)
             lines[-1].text += child.tail or ""
 
-    def _start_of(self, element: Element, units: Units, before: complex) -> complex | None:
+    def _start_of(self, element: Element, style: Style, before: complex) -> complex | None:
         """Place of a part of a text; None if it goes on where the part before ends."""
         if name_of(element) == "textPath":
             self.note(
@@ -483,10 +480,10 @@ class SvgDrawing:
                 found[name] = words[0]
             if words[1:]:
                 self.note(element, f"its letters have places in {name}; the first one counts")
-        move = units.place(found.get("dx"), found.get("dy"))
+        move = style.place(found.get("dx"), found.get("dy"))
         if "x" not in found and "y" not in found and not move.imag:
             return None
-        place = units.place(found.get("x"), found.get("y"))
+        place = style.place(found.get("x"), found.get("y"))
         x = place.real if "x" in found else before.real
         y = place.imag if "y" in found else before.imag
         return complex(x, y) + move
@@ -502,7 +499,7 @@ class SvgDrawing:
         if target in self._used or target in element.iterancestors():
             self.note(element, "it uses an element that it stands in; ignored")
             return []
-        start = AffineMap(r=place.units.place(element.get("x"), element.get("y")))
+        start = AffineMap(r=place.style.place(element.get("x"), element.get("y")))
         there = changed(place, matrix=place.matrix @ start, named=False, context=place)
         self._used.append(target)
         found = self._drawn(target, there, (element.get("width"), element.get("height")))
@@ -513,25 +510,25 @@ class SvgDrawing:
         self, element: Element, place: _Place, sizes: tuple[str | None, ...]
     ) -> list[AnyPattern]:
         """Patterns of a drawing in a drawing, which is fitted into its rectangle and cut to it."""
-        units = place.units
+        style = place.style
         size: list[float] = []
         for key, given, whole in zip(
-            ("width", "height"), sizes or (None, None), units.view, strict=True
+            ("width", "height"), sizes or (None, None), style.view, strict=True
         ):
-            texts = (given, place.style[key], "100%")
-            lengths = (units.length(text, whole) for text in texts)
+            texts = (given, style[key], "100%")
+            lengths = (style.length(text, whole) for text in texts)
             size.append(next(one for one in lengths if one is not None))
         if min(size) <= 0:
             self.note(element, "it has no size, and is left out")
             return []
-        start = AffineMap(r=units.place(element.get("x"), element.get("y")))
+        start = AffineMap(r=style.place(element.get("x"), element.get("y")))
         return self._in_view(
             element, changed(place, matrix=place.matrix @ start), (size[0], size[1])
         )
 
-    def _of_shape(self, element: Element, name: str, place: _Place) -> list[AnyPattern]:
+    def _of_shape(self, element: Element, place: _Place) -> list[AnyPattern]:
         """Patterns of a shape and of its markers, the lowest first."""
-        path = outlines.path_of(element, place.style, place.units)
+        path = outlines.path_of(element, place.style)
         segments, whole = outlines.segments_of(path)
         if not whole:
             self.note(
@@ -543,13 +540,13 @@ class SvgDrawing:
         if place.cutting is not None:
             place.cutting.extend(self._areas(element, contours, place, "clip-rule"))
             return []
-        fill, lines = self._look_of_shape(element, name, place)
+        fill, lines = self._look_of_shape(element, place)
         width = lines["stroke"].width_mm if lines.get("stroke") else 0.0
         if place.clip and contours and outlines.is_within(contours, width / 2, place.clip):
             place = changed(place, clip=None)
         patterns: list[AnyPattern] = []
         if fill is not None or lines:
-            patterns = self._patterns(element, name, contours, place, fill, lines)
+            patterns = self._patterns(element, contours, place, fill, lines)
             if not patterns and place.clip is None and whole:
                 self.note(element, "it has no size, and is left out")
         if place.strength < 1.0:
@@ -564,17 +561,16 @@ class SvgDrawing:
                 f"{self._name} has more than {MOST_POINTS} places on its lines; simplify it"
             )
 
-    def _look_of_shape(
-        self, element: Element, name: str, place: _Place
-    ) -> tuple[Fill | None, dict[str, Any]]:
+    def _look_of_shape(self, element: Element, place: _Place) -> tuple[Fill | None, dict[str, Any]]:
         """Fill of a shape, and its stroke or its dots."""
-        look, style, units = place.look or ClassLook(), place.style, place.units
+        look, style = place.look or ClassLook(), place.style
 
         def note(remark: str) -> None:
             self.note(element, remark)
 
-        fill = None if name == "line" else look.fill
-        if fill is None and name != "line":
+        is_line = name_of(element) == "line"
+        fill = None if is_line else look.fill
+        if fill is None and not is_line:
             color = self._color(element, place, "fill")
             fill = color and fill_of(color, note)
         if look.dots is not None:
@@ -585,9 +581,9 @@ class SvgDrawing:
             if style["vector-effect"] == "non-scaling-stroke":
                 view = view_box_of(self._root.get("viewBox")) or (0.0, 0.0, *self.size_px)
                 scale = PX_MM * fit(view, self.size_px, "").scale
-            width = units.length(style["stroke-width"], units.diagonal) or 0.0
+            width = style.length(style["stroke-width"], style.diagonal) or 0.0
             color = self._color(element, place, "stroke")
-            stroke = color and stroke_of(color, width * scale, dashes_of(style, scale, units), note)
+            stroke = color and stroke_of(color, width * scale, dashes_of(style, scale), note)
         return fill, {"stroke": stroke} if stroke else {}
 
     def _color(self, element: Element, place: _Place, what: str) -> Color | None:
@@ -628,17 +624,14 @@ class SvgDrawing:
         if name_of(element) == "pattern":
             return BLACK
         stops: list[Element] = []
-        after: Element | None = element
         for _ in range(_MOST_LINKS):
-            if after is not None and not stops:
-                stops = [child for child in after if name_of(child) == "stop"]
-                after = self._ids.get(link_of(after)[1:])
+            stops = stops or [child for child in element if name_of(child) == "stop"]
+            element = self._ids.get(link_of(element)[1:], element)
         colors: set[Color] = set()
         for stop in stops:
-            style = self._sheets.of(stop, INITIAL, self._units)
+            style = self._sheets.of(stop, self._initial)
             color = color_of(style["stop-color"]) or BLACK
-            opacity = share_of(style["stop-opacity"])
-            colors.add(color._replace(alpha=color.alpha * opacity))
+            colors.add(color._replace(alpha=color.alpha * share_of(style["stop-opacity"])))
         plain = len(colors) == 1 or all(color.alpha <= LEAST_SHARE for color in colors)
         return next(iter(colors), None) if plain else BLACK
 
@@ -660,16 +653,15 @@ class SvgDrawing:
     def _patterns(
         self,
         element: Element,
-        name: str,
         contours: list[Contour],
         place: _Place,
         fill: Fill | None,
         lines: dict[str, Any],
     ) -> list[AnyPattern]:
         """Patterns of outlines, the lowest first."""
-        whole = place.clip is None
+        whole, name = place.clip is None, name_of(element)
         if whole and name in ("circle", "ellipse"):
-            middle, (rx, ry) = outlines.round_of(element, place.style, place.units)
+            middle, (rx, ry) = outlines.round_of(element, place.style)
             radius = rx * place.matrix.scale
             if rx == ry and place.matrix.keeps_circles and LEAST_MM <= radius <= 10_000.0:
                 (center,) = outlines.in_mm(outlines.ring_of([place.matrix(middle)]))
@@ -709,7 +701,7 @@ class SvgDrawing:
                 found.append(PathShape(contours_mm=parts, closed=closed, **lines))
         return found
 
-    def _clipped(self, element: Element, name: str, place: _Place) -> _Place:
+    def _clipped(self, element: Element, place: _Place) -> _Place:
         """Place of an element with its own clip-path."""
         written = place.style["clip-path"]
         if written == "none":
@@ -717,18 +709,18 @@ class SvgDrawing:
         target = self._ids.get(target_of(written))
         box: Box | None = (0.0, 0.0, 1.0, 1.0)
         if target is not None and target.get("clipPathUnits") == "objectBoundingBox":
-            box = self._box(element, name, place)
+            box = self._box(element, place)
         if target is None or name_of(target) != "clipPath" or target in self._used or box is None:
             self.note(element, f"its clip-path {short(written, 40)} is ignored")
             return place
-        around = self._style_around(target)
-        style = self._sheets.of(target, around, place.units)
+        around = changed(self._style_around(target), view=place.style.view)
+        style = self._sheets.of(target, around)
         matrix = place.matrix @ affine(box[2], 0.0, 0.0, box[3], box[0], box[1])
         rings: list[Ring] = []
         inner = changed(place, matrix=matrix, style=style, cutting=rings, clip=None, named=False)
-        inner = changed(inner, matrix=matrix @ self._matrix(target, "clipPath", inner))
+        inner = changed(inner, matrix=matrix @ self._matrix(target, inner))
         self._used.append(target)
-        inner = self._clipped(target, "clipPath", inner)
+        inner = self._clipped(target, inner)
         for child in target:
             self._drawn(child, inner)
         self._used.pop()
@@ -742,9 +734,9 @@ class SvgDrawing:
 
     def _style_around(self, element: Element) -> Style:
         """Style of the elements around one that is used from elsewhere."""
-        style = INITIAL
+        style = self._initial
         for one in reversed(list(element.iterancestors())):
-            style = self._sheets.of(one, style, self._units)
+            style = self._sheets.of(one, style)
         return style
 
     def _markers(self, segments: Any, place: _Place) -> list[AnyPattern]:
@@ -771,19 +763,19 @@ class SvgDrawing:
         self, marker: Element, corners: list[outlines.Corner], place: _Place, turn: float
     ) -> list[AnyPattern]:
         """Patterns of a marker at vertices; ``turn`` is what auto-start-reverse adds there."""
-        units = place.units
-        size = units.place(marker.get("markerWidth", "3"), marker.get("markerHeight", "3"))
-        unit = units.length(place.style["stroke-width"], units.diagonal) or 0.0
+        around = place.style
+        size = around.place(marker.get("markerWidth", "3"), marker.get("markerHeight", "3"))
+        unit = around.length(around["stroke-width"], around.diagonal) or 0.0
         if marker.get("markerUnits") == "userSpaceOnUse":
             unit = 1.0
-        style = self._sheets.of(marker, self._style_around(marker), self._units)
+        style = self._sheets.of(marker, self._style_around(marker))
         faint = share_of(style["opacity"]) <= LEAST_SHARE
         if min(size.real, size.imag, unit) <= 0 or faint or marker in self._used:
             return []
         box = (size.real, size.imag)
         view = view_box_of(marker.get("viewBox")) or (0.0, 0.0, *box)
         fitted = fit(view, box, marker.get("preserveAspectRatio") or "")
-        middle = fitted(units.place(marker.get("refX"), marker.get("refY")))
+        middle = fitted(around.place(marker.get("refX"), marker.get("refY")))
         orient = (marker.get("orient") or "0").strip()
         inner = changed(place, style=style, context=place, named=False, depth=place.depth + 1)
         found: list[AnyPattern] = []
@@ -800,31 +792,31 @@ class SvgDrawing:
         self._used.pop()
         return found
 
-    def _matrix(self, element: Element, name: str, place: _Place) -> AffineMap:
+    def _matrix(self, element: Element, place: _Place) -> AffineMap:
         """Map of an element's transform about its origin."""
         written = place.style["transform"]
         if written == "none":
             return AffineMap()
-        box: Box = (0.0, 0.0, *place.units.view)
+        box: Box = (0.0, 0.0, *place.style.view)
         if place.style["transform-box"] in _OWN_BOXES:
-            own = self._box(element, name, place)
+            own = self._box(element, place)
             if own is None:
                 self.note(element, "its transform-box is ignored; only shapes have one")
             box = own or box
-        matrix = transform_of(written, place.units, box)
+        matrix = transform_of(written, place.style, box)
         if matrix is None:
             self.note(element, "its transform is not understood; it is drawn without")
             return AffineMap()
-        origin = origin_of(place.style["transform-origin"], place.units, box)
+        origin = origin_of(place.style["transform-origin"], place.style, box)
         if origin is None:
             self.note(element, "its transform-origin is not understood; it is ignored")
         return about(origin or 0j, matrix)
 
-    def _box(self, element: Element, name: str, place: _Place) -> Box | None:
+    def _box(self, element: Element, place: _Place) -> Box | None:
         """Box around a shape, in its own units; None for others than shapes."""
-        if name not in SHAPES:
+        if name_of(element) not in SHAPES:
             return None
-        segments, _ = outlines.segments_of(outlines.path_of(element, place.style, place.units))
+        segments, _ = outlines.segments_of(outlines.path_of(element, place.style))
         if not len(segments):
             return None
         left, top, right, bottom = segments.boundingbox()

@@ -10,9 +10,9 @@ from vbraille.scene.patterns import Along, Dotting, Fill, Stroke, Uniform, Use
 from vbraille.toml import Table
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
-    from vbraille.scene.svg.document import Color, Units
+    from vbraille.scene.svg.document import Color, Style
 
     Note = Callable[[str], None]
 
@@ -130,10 +130,10 @@ def stroke_of(color: Color, width_mm: float, dashes_mm: list[float], note: Note)
     return Stroke(width_mm=width_mm, edge_mm=_EDGE_MM, amplitude=strength, along=along)
 
 
-def dashes_of(style: Mapping[str, str], scale_mm: float, units: Units) -> list[float]:
+def dashes_of(style: Style, scale_mm: float) -> list[float]:
     """Lengths of dashes and gaps in mm; empty for a whole line."""
     words = re.split(r"[\s,]+", style["stroke-dasharray"])
-    lengths = [(units.length(word, units.diagonal) or 0.0) * scale_mm for word in words]
+    lengths = [(style.length(word, style.diagonal) or 0.0) * scale_mm for word in words]
     if min(lengths) < 0 or sum(lengths) <= 0:
         return []
     return lengths * 2 if len(lengths) % 2 else lengths

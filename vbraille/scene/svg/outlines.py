@@ -18,10 +18,10 @@ from vbraille.scene.measures import MOST_MM
 from vbraille.scene.svg.document import AffineMap, name_of, numbers_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Sequence
 
     from vbraille.scene.measures import Point
-    from vbraille.scene.svg.document import Element, Units
+    from vbraille.scene.svg.document import Element, Style
 
 pyclipper: Any = clipper_library  # its types are not declared
 SHAPES = frozenset(("path", "rect", "circle", "ellipse", "line", "polyline", "polygon"))
@@ -87,15 +87,15 @@ def _parsed(d: str) -> Path | None:
         return None
 
 
-def path_of(element: Element, style: Mapping[str, str], units: Units) -> str:
+def path_of(element: Element, style: Style) -> str:
     """Text of a path for a shape; empty if the shape has no size."""
     name = name_of(element)
     if name == "path":
         d = element.get("d") or ""
         return "" if d.strip() == "none" else d
     if name == "line":
-        start = units.place(element.get("x1"), element.get("y1"))
-        end = units.place(element.get("x2"), element.get("y2"))
+        start = style.place(element.get("x1"), element.get("y1"))
+        end = style.place(element.get("x2"), element.get("y2"))
         return f"M{start.real!r} {start.imag!r}L{end.real!r} {end.imag!r}"
     if name in ("polyline", "polygon"):
         numbers = numbers_of((element.get("points") or "")[:_MOST_CHARACTERS])
@@ -103,14 +103,14 @@ def path_of(element: Element, style: Mapping[str, str], units: Units) -> str:
         return f"M{places}{'Z' * (name == 'polygon')}" if len(numbers) >= 4 else ""
     if name == "rect":
         place, size = (
-            units.place(style["x"], style["y"]),
-            units.place(style["width"], style["height"]),
+            style.place(style["x"], style["y"]),
+            style.place(style["width"], style["height"]),
         )
         x, y, w, h = place.real, place.imag, size.real, size.imag
-        rx, ry = _radii(style, units)
+        rx, ry = _radii(style)
         rx, ry = min(rx, w / 2), min(ry, h / 2)
     else:
-        middle, (rx, ry) = round_of(element, style, units)
+        middle, (rx, ry) = round_of(element, style)
         x, y, w, h = middle.real - rx, middle.imag - ry, 2 * rx, 2 * ry
     if w <= 0 or h <= 0:
         return ""
@@ -124,18 +124,18 @@ def path_of(element: Element, style: Mapping[str, str], units: Units) -> str:
     )
 
 
-def round_of(element: Element, style: Mapping[str, str], units: Units) -> tuple[complex, Point]:
+def round_of(element: Element, style: Style) -> tuple[complex, Point]:
     """Middle and radii of a circle or an ellipse, in user units; 0 for one without a size."""
-    middle = units.place(style["cx"], style["cy"])
+    middle = style.place(style["cx"], style["cy"])
     if name_of(element) == "ellipse":
-        return middle, _radii(style, units)
-    radius = max(units.length(style["r"], units.diagonal) or 0.0, 0.0)
+        return middle, _radii(style)
+    radius = max(style.length(style["r"], style.diagonal) or 0.0, 0.0)
     return middle, (radius, radius)
 
 
-def _radii(style: Mapping[str, str], units: Units) -> Point:
+def _radii(style: Style) -> Point:
     """Radii along x and y; one that is not given, or below 0, is like the other."""
-    radii = units.length(style["rx"], units.view[0]), units.length(style["ry"], units.view[1])
+    radii = style.length(style["rx"], style.view[0]), style.length(style["ry"], style.view[1])
     rx, ry = (None if one is None or one < 0 else one for one in radii)
     return rx if rx is not None else ry or 0.0, ry if ry is not None else rx or 0.0
 

@@ -8,8 +8,7 @@ A *level* is a value of the procedure's parameter for strings; the difference fr
 where a design has one; or the two values, the lower first, of which one is preferred.
 
 **Staircases.** One up and two down converges where 70.7 % are right, one up and three down where
-79.4 % are (Levitt 1971). With one up and one down, steps of two sizes converge where a share p is
-right, if the easier step is p / (1 - p) times the harder one (Kaernbach 1991).
+79.4 % are (Levitt 1971).
 """
 
 from __future__ import annotations
@@ -99,8 +98,6 @@ class Staircase(Procedure, frozen=True, kw_only=True, tag="staircase"):
         Sizes of the step before the first reversal, before the second, and so on.
     right, wrong
         How many right answers running make it harder, and how many wrong ones easier.
-    target
-        Share of right answers that steps of two sizes converge to, with right = wrong = 1.
     reversals
         After how many reversals a staircase is over.
     """
@@ -109,12 +106,7 @@ class Staircase(Procedure, frozen=True, kw_only=True, tag="staircase"):
     steps: Annotated[tuple[Positive, ...], Meta(min_length=1)]
     right: Count = 2
     wrong: Count = 1
-    target: Annotated[float, Meta(ge=0.05, le=0.95)] | None = None
     reversals: Count | None = None
-
-    def __post_init__(self) -> None:
-        if self.target is not None and (self.right, self.wrong) != (1, 1):
-            raise WrongValue("target", "is of steps up and down; give right = 1 and wrong = 1")
 
     def climbs(self, design: AnyDesign, history: list[Outcome], seed: str) -> list[Climb]:
         """Return the staircases after some answers."""
@@ -164,8 +156,6 @@ class Climb:
             self.turned.append(level)
         self._went_harder = right
         size = rule.steps[min(len(self.turned), len(rule.steps) - 1)]
-        if rule.target is not None and not right:
-            size *= rule.target / (1 - rule.target)
         falls = right == (rule.harder == "less" or isinstance(self.design, Compared))
         least, *_, most = rule.levels(self.design)
         moved = round(level - size if falls else level + size, PLACES)

@@ -324,45 +324,47 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
     orders: dict[str, OrderRow] = {}
     group: str = ""
 
-    def crossed(self, *, between: bool) -> list[tuple[str, dict[str, Condition]]]:
+    def crossed(self, *, between: bool) -> list[tuple[Condition, dict[str, str]]]:
         """Return the combinations of the factors within participants, or between them.
 
         Returns
         -------
         list
-            Name of each combination, and its level of each factor.
+            Each combination as a condition, and its level of each factor.
         """
         own = [factor for factor in self.factors if factor.between == between]
-        names = [factor.name for factor in own]
-        return [
-            ("-".join(level.name for level in levels), dict(zip(names, levels, strict=True)))
-            for levels in itertools.product(*(factor.levels for factor in own))
-        ]
+        found = []
+        for levels in itertools.product(*(factor.levels for factor in own)):
+            look = {key: value for level in levels for key, value in level.given.items()}
+            names = {factor.name: level.name for factor, level in zip(own, levels, strict=True)}
+            found.append((Condition(name="-".join(names.values()), **look), names))
+        return found
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
         """Conditions: those that are listed, or all combinations of factors; at least one."""
         if all(factor.between for factor in self.factors):
             return self.listed or (Condition(name="all"),)
-        cells = self.crossed(between=False)
-        return tuple(Condition(name=name, **_given(levels)) for name, levels in cells)
+        return tuple(cell for cell, _ in self.crossed(between=False))
 
     @property
     def groups(self) -> tuple[str, ...]:
         """Names of the groups of participants; none if all do the same."""
-        return tuple(name for name, _ in self.crossed(between=True) if name)
+        return tuple(cell.name for cell, _ in self.crossed(between=True) if cell.name)
 
     def of_group(self, group: str) -> Protocol:
         """Return the protocol as a group has it."""
-        levels = dict(self.crossed(between=True))[group]
-        display = msgspec.structs.replace(self.display, **_given(levels))
+        cells = {cell.name: cell for cell, _ in self.crossed(between=True)}
+        display = msgspec.structs.replace(self.display, **cells[group].given)
         return msgspec.structs.replace(self, display=display, group=group)
 
     def levels(self, condition: str, group: str) -> dict[str, str]:
         """Return the level of each factor in a condition of a group."""
-        within, between = (dict(self.crossed(between=each)) for each in (False, True))
-        levels = within.get(condition, {}) | between.get(group, {})
-        return {factor: level.name for factor, level in levels.items()}
+        within, between = (
+            {cell.name: levels for cell, levels in self.crossed(between=each)}
+            for each in (False, True)
+        )
+        return within.get(condition, {}) | between.get(group, {})
 
     def look(self, condition: str) -> Look:
         """Return how a condition shows what has no value of its own."""
@@ -457,8 +459,3 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
     def needs_pins(self) -> bool:
         """Tell whether a conventional display is needed."""
         return bool(self.pins.reference) or any(look.on == "pins" for look in self.looks)
-
-
-def _given(levels: dict[str, Condition]) -> dict[str, Any]:
-    """Return what some levels of factors change of the display."""
-    return {key: value for level in levels.values() for key, value in level.given.items()}

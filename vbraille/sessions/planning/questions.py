@@ -186,9 +186,9 @@ class Question(Table, frozen=True, kw_only=True, tag_field="kind"):
         """Return an answer as it stands in the table."""
         return answer
 
-    def unfelt(self, parameter: str) -> str:
-        """Return why the simulated reader cannot answer about a parameter; empty if it can."""
-        return ""
+    def is_felt(self, parameter: str) -> bool:
+        """Tell whether the simulated reader can answer about a parameter."""
+        return parameter in ("", "texture", "contrast", *LENGTHS)
 
     def simulate(self, felt: FeltTrial) -> str:
         """Answer by what was felt."""
@@ -296,12 +296,9 @@ class Which(Chosen, frozen=True, kw_only=True, tag="which"):
         """Return the value that was chosen."""
         return f"{trial.values[int(answer) - 1]:g}"
 
-    def unfelt(self, parameter: str) -> str:
-        """Return why the simulated reader cannot choose."""
-        by_length = parameter in LENGTHS
-        if parameter == "texture_cycles" or (self.right == "nearest" and not by_length):
-            return f"the simulated reader feels how strong a dot is, and not its {parameter}"
-        return ""
+    def is_felt(self, parameter: str) -> bool:
+        """Tell whether stimuli differ in a strength, or in a length that is told in mm."""
+        return parameter in LENGTHS or (self.right != "nearest" and super().is_felt(parameter))
 
     def simulate(self, felt: FeltTrial) -> str:
         """Choose what is right; of preferences the nearest to the usual length, or the strongest.
@@ -659,9 +656,9 @@ class Free(Question, frozen=True, kw_only=True, tag="free"):
             raise ValueError("nothing was typed; type any words")
         return text.strip()
 
-    def unfelt(self, parameter: str) -> str:
-        """Return why the simulated reader cannot answer."""
-        return "the simulated reader has no words"
+    def is_felt(self, parameter: str) -> bool:
+        """Tell that the simulated reader has no words."""
+        return False
 
 
 AnyQuestion = (

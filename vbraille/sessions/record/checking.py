@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
+from collections.abc import Iterator
 from contextlib import closing, suppress
 from hashlib import sha256
 from pathlib import Path
@@ -15,10 +16,10 @@ from vbraille.sessions.record.record import (
     START,
     RecordError,
     connect,
+    encoded,
     insert,
     plan_sum,
     reading,
-    sum_of_row,
     told,
 )
 
@@ -51,7 +52,17 @@ def check(path: Path, expect: str = "") -> list[str]:
             planned = db.execute("SELECT data FROM event WHERE n = 1").fetchone()
             if planned is None or json.loads(planned[0])["plan"] != plan_sum(db):
                 faults.append("the protocol or the plan was changed")
-            _check_chain(db, faults, sums)
+            before = START
+            for what, content, sum_ in _links(db):
+                if sum_ != sha256(before + content).digest():
+                    faults.append(f"{what} was changed")
+                before = sum_
+                sums.add(sum_.hex())
+            if db.execute("PRAGMA foreign_key_check").fetchone():
+                faults.append("there are ticks of events that are missing")
+            for (sealed,) in db.execute("SELECT sum FROM seal"):
+                if sealed.hex() not in sums:
+                    faults.append("what was there when it was closed was changed or is missing")
     except (RecordError, sqlite3.Error, TypeError, KeyError, ValueError) as error:
         faults.append(f"file: {error}")
     if expect and expect.lower() not in sums:
@@ -59,24 +70,13 @@ def check(path: Path, expect: str = "") -> list[str]:
     return faults
 
 
-def _check_chain(db: sqlite3.Connection, faults: list[str], sums: set[str]) -> None:
-    before, query = START, "SELECT first, fields, sum FROM ticks WHERE after = ? ORDER BY first"
-    for number, (*row, sum_) in enumerate(db.execute("SELECT * FROM event ORDER BY n"), 1):
-        if row[0] != number or sum_ != sum_of_row(row, before):
-            faults.append(f"event {row[0]}, or what stands before it, was changed")
-        before = sum_
-        sums.add(before.hex())
+def _links(db: sqlite3.Connection) -> Iterator[tuple[str, bytes, bytes]]:
+    """Go through events and ticks in their order: what each is, its content, and its sum."""
+    query = "SELECT first, fields, sum FROM ticks WHERE after = ? ORDER BY first"
+    for *row, sum_ in db.execute("SELECT * FROM event ORDER BY n"):
+        yield f"event {row[0]}, or what stands before it,", encoded(row), sum_
         for first, fields, sum_ in db.execute(query, (row[0],)):
-            if sum_ != sha256(before + fields).digest():
-                faults.append(f"ticks after event {row[0]}, from {first} on, were changed")
-            before = sum_
-            sums.add(before.hex())
-    lost = "SELECT count(*) FROM ticks WHERE after NOT IN (SELECT n FROM event)"
-    if count := db.execute(lost).fetchone()[0]:
-        faults.append(f"{count} blobs of ticks belong to events that are missing")
-    for (sealed,) in db.execute("SELECT sum FROM seal"):
-        if sealed.hex() not in sums:
-            faults.append("what was there when it was closed last was changed, or is missing")
+            yield f"a part of the ticks after event {row[0]}, from {first} on,", fields, sum_
 
 
 def salvage(path: Path, into: Path) -> list[str]:

@@ -303,14 +303,14 @@ def insert(db: sqlite3.Connection, table: str, row: Sequence[Any]) -> None:
 def _insert_event(db: sqlite3.Connection, event: Event, before: bytes) -> bytes:
     """Insert an event, and return its sum."""
     row = [*msgspec.structs.astuple(event)[:-1], json.dumps(event.data, ensure_ascii=False)]
-    sum_ = sum_of_row(row, before)
+    sum_ = sha256(before + encoded(row)).digest()
     insert(db, "event", (*row, sum_))
     return sum_
 
 
-def sum_of_row(row: list[Any], before: bytes) -> bytes:
-    """Return the sum of an event: SHA-256 of the sum before it and of its columns as JSON."""
-    return sha256(before + json.dumps(row, ensure_ascii=False).encode()).digest()
+def encoded(row: list[Any]) -> bytes:
+    """Return the columns of an event as JSON, which its sum is made of."""
+    return json.dumps(row, ensure_ascii=False).encode()
 
 
 def plan_sum(db: sqlite3.Connection) -> str:

@@ -86,13 +86,12 @@ class Replay:
             Ticks, and the deflections of each, 0 to 1. They are NaN in a fade whose beginning is
             missing.
         """
+        events, place = self.content.events, list(self.showings).index(line)
         cues = [showing.cue.n for showing in self.showings.values()]
-        place, events = list(self.showings).index(line), self.content.events
-        earlier = cues[place - BEFORE] - 1 if place >= BEFORE else 0
-        run = max(event.n for event in events if event.kind == "run" and event.n < cues[place])
-        until = (cues[place + AFTER :] or [events[-1].n + 1])[0]
+        run = max(event.n for event in events[: cues[place]] if event.kind == "run")
+        cues = [run] * BEFORE + cues + [events[-1].n + 1] * AFTER
         with reading(self.content.path) as db:
-            ticks = read_all(db, max(earlier, run - 1), until)
+            ticks = read_all(db, max(cues[place], run) - 1, cues[place + BEFORE + AFTER])
         own = ticks["line"] == line
         return ticks[own], self._frames(ticks)[own]
 

@@ -136,7 +136,6 @@ class _Table:
             row |= dict.fromkeys(OF_PASSAGES, "")
         row |= self._planned(trial) | self._happened(trial)
         if self.progress.answer(trial) is not None:
-            row |= self._answered(trial)
             row |= (self._read_passage if protocol.design.passage else self._read)(db, trial)
         row |= {f"item_{name}": trial.columns.get(name, "") for name in protocol.item_columns}
         for item in protocol.questionnaire:
@@ -179,48 +178,41 @@ class _Table:
 
     def _happened(self, trial: Trial) -> dict[str, Any]:
         """Return the cells on what happened in the attempt that counts."""
-        tried = self.progress.tried[trial.key]
+        tried, asks = self.progress.tried[trial.key], self._protocol.asks
+        answer, paused_s = tried.answer, tried.paused_s
+        data = {} if answer is None else answer.data
         row: dict[str, Any] = {
-            "paused_s": round(tried.paused_s, 6),
+            "paused_s": round(paused_s, 6),
             "warned": int(bool(tried.of("warning"))),
             "faults": "; ".join(event.data["what"] for event in tried.of("fault")),
             "notes": "; ".join(e.data["text"] for e in tried.events if e.kind == "note"),
-            "early": 0,
-            "late": int(tried.decided == "missed"),
-            "analysed": 0,
+            "early": int(data.get("early", False)),
+            "late": int(data.get("late", tried.decided == "missed")),
+            "analysed": int(answer is not None and (not trial.catch or asks.counts_catch)),
         }
         for cue in tried.of("cue")[:1]:
             row["cue_time"] = cue.wall
             for contact in tried.of("contact")[:1]:
                 row["contact_s"] = round(contact.t_s - cue.t_s, 6)
-        return row
-
-    def _answered(self, trial: Trial) -> dict[str, Any]:
-        """Return the cells on the answer that counts."""
-        tried, asks = self.progress.tried[trial.key], self._protocol.asks
-        answer, confidence = tried.answer, tried.confidence
-        assert answer is not None, "it has an answer"
-        given, correct = answer.data["answer"], self.progress.is_right(trial)
-        first = next(e.data["answer"] for e in tried.events if e.kind == "answer")
-        row = {
-            "answered": asks.cell(trial, given),
-            "correct": "" if correct is None else int(correct),
-            "outcome": asks.outcome(trial, given),
-            "confidence": "" if confidence is None else confidence.data["confidence"],
-            "first_answer": "" if first == given else asks.cell(trial, first),
-            **self._sources[answer.n],
-            "answer_time": answer.wall,
-            "early": int(answer.data.get("early", False)),
-            "late": int(answer.data.get("late", False)),
-            "analysed": int(not trial.catch or asks.counts_catch),
-        }
+        if answer is None:
+            return row
         until = answer
         for ended in tried.of("ended"):
             row["ended_by"] = ended.data["by"]
             until = answer if ended.data["by"] == "exposure" else ended
         for cue in tried.of("cue")[:1]:
-            row["response_s"] = round(until.t_s - cue.t_s - tried.paused_s, 6)
-        return row
+            row["response_s"] = round(until.t_s - cue.t_s - paused_s, 6)
+        given, correct = data["answer"], self.progress.is_right(trial)
+        first = next(e.data["answer"] for e in tried.events if e.kind == "answer")
+        return row | {
+            "answered": asks.cell(trial, given),
+            "correct": "" if correct is None else int(correct),
+            "outcome": asks.outcome(trial, given),
+            "confidence": "" if tried.confidence is None else tried.confidence.data["confidence"],
+            "first_answer": "" if first == given else asks.cell(trial, first),
+            "answer_time": answer.wall,
+            **self._sources[answer.n],
+        }
 
     def _read(self, db: sqlite3.Connection, trial: Trial) -> dict[str, Any]:
         """Return the cells on how a string was read, which the ticks tell."""

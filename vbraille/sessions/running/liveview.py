@@ -135,11 +135,8 @@ class SessionView:
         style, facts = protocol.style(protocol.display), []
         if trial is not None:
             facts.append(("trial", runner.name))
-            if len(trial.stimuli) > 1 and runner.is_shown:
-                which = f"{ordinal(runner.stimulus)} of {len(trial.stimuli)}"
-                facts.append(("stimulus", which))
-            if runner.attempt > 1:
-                facts.append(("attempt", str(runner.attempt)))
+            facts.append(("stimulus", f"{ordinal(runner.stimulus)} of {len(trial.stimuli)}"))
+            facts.append(("attempt", str(runner.attempt)))
         minutes, seconds = divmod(int(runner.elapsed_s), 60)
         facts.append(("answered", str(runner.progress.done)))
         facts.append(("time", f"{minutes} min {seconds:02} s"))

@@ -66,11 +66,8 @@ class Markers:
             return
         code, words = KINDS[kind].byte, [kind]
         if trial is not None:
-            words.append(trial.name)
-            if stimulus:
-                words.append(f"stimulus {stimulus + 1}")
-            if len(self._codes) > 1:
-                words.append(f"condition {trial.condition}")
+            words += [trial.name, f"condition {trial.condition}"]
+            words += [f"stimulus {stimulus + 1}"] if stimulus else []
             if kind == "cue":
                 code = self._codes.get(trial.condition, code)
         try:
@@ -95,11 +92,12 @@ def _open_stream(name: str) -> Callable[[str, int, float], None]:
         form: Any = "string"  # whose stub has numbers alone
         info = pylsl.StreamInfo(name, "Markers", 1, 0, form, f"vbraille-{name}")
         outlet = pylsl.StreamOutlet(info)
-    except ModuleNotFoundError:
-        raise InputError("markers lsl need pylsl; pip install 'vbraille[markers]'") from None
     except (ImportError, OSError, RuntimeError) as error:
         told = str(error).strip().partition("\n")[0]
-        raise InputError(f"the Lab Streaming Layer does not work here: {told}") from None
+        hint = "pip install 'vbraille[markers]'"
+        raise InputError(
+            f"markers lsl need pylsl, the Lab Streaming Layer: {told}; {hint}"
+        ) from None
 
     def send(text: str, _code: int, at_s: float) -> None:
         outlet.push_sample([text], pylsl.local_clock() - (time.monotonic() - at_s))

@@ -5,20 +5,19 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import lru_cache
 from hashlib import sha256
-from itertools import pairwise
 from typing import Annotated
 
 import numpy as np
-from msgspec import Meta, Struct, ValidationError, convert, structs
+from msgspec import Meta, Struct, ValidationError, convert
 
 from vbraille.errors import InputError
 from vbraille.sessions.planning.plan import Plan
 from vbraille.sessions.planning.protocol import Protocol
-from vbraille.sessions.planning.shown import edges_mm, make_shown
-from vbraille.sessions.planning.trial import Stimulus, Trial
+from vbraille.sessions.planning.shown import make_shown
+from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.planning.values import Share
 from vbraille.sessions.running.answers import Answers, Asked, Line
-from vbraille.sessions.simulated.feeling import CELL_GAP, LENGTHS, DotPair, FeltTrial
+from vbraille.sessions.simulated.feeling import FeltTrial
 from vbraille.sessions.simulated.matching import differences, most_like
 from vbraille.sessions.simulated.observer import Observer
 
@@ -93,13 +92,15 @@ class Simulated(Answers):
         self._parameter = protocol.design.parameter
         self._answered = ""
         self._program = lru_cache(maxsize=None)(lambda shown: make_shown(protocol, shown).program)
-        kind, why = self._question.kind, self._question.unfelt(self._parameter)
+        kind, why = self._question.kind, ""
         if protocol.medium == "paper":
             why = "the simulated reader cannot feel paper"
         elif any(stimulus.on == "pins" for trial in plan.trials for stimulus in trial.stimuli):
             why = "the simulated reader cannot feel a conventional display"
         elif protocol.shows_pictures and kind != "name":
             why = f"the simulated reader cannot answer {kind} of pictures"
+        elif not self._question.is_felt(self._parameter):
+            why = f"the simulated reader cannot answer {kind} {self._parameter}".rstrip()
         if why:
             raise InputError(f"{protocol.name}: {why}; type the answers, or give a file of them")
         if self._habits.false_alarms and not self._question.alarm:
@@ -142,8 +143,10 @@ class Simulated(Answers):
             apart = differences(felt[-1], [self._program(each.stimuli[0]) for each in known])
             names = [self._question.right_answer(each) for each in known]
             return most_like(apart, names, self._noise, random)
-        look, model = self._study.look(trial.condition), self._study.display_model
-        style = self._study.style(look)
+        model, style = (
+            self._study.display_model,
+            self._study.style(self._study.look(trial.condition)),
+        )
         told = replace(model.style, mapping=style.mapping, geometry=style.geometry)
         lead = self._study.display.lead_cells
         start = lead + len(first.before)
@@ -154,25 +157,9 @@ class Simulated(Answers):
             [len(stimulus.masks(lead)) for stimulus in trial.stimuli],
             slice(start, start + len(first.cells)),
             self._parameter,
-            self._pair_of(structs.replace(first, look=look)),
             len(felt) - count,
         )
         return self._question.simulate(sensed)
-
-    def _pair_of(self, usual: Stimulus) -> DotPair | None:
-        """Return two dot columns by which a distance is told; None if it has none, or needs none.
-
-        The cells are the same in all trials of a comparison, and known to the reader.
-        """
-        if self._parameter not in LENGTHS:
-            return None
-        edges = edges_mm(self._study, usual)
-        pitch_mm = self._study.style(usual.look).geometry.cell_pitch_mm
-        for number, (one, two) in enumerate(pairwise(edges)):
-            cells = int(two // pitch_mm) - int(one // pitch_mm)
-            if (cells > 0) is (self._parameter == CELL_GAP):
-                return DotPair(len(edges), number, two - one, cells)
-        return None
 
 
 def random_of(text: str) -> np.random.Generator:

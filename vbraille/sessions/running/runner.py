@@ -484,7 +484,7 @@ class Runner:
         self._look()
         if found is not None:
             return self._obey(found)
-        if asked is not None and asked.what == "answer" and self.is_shown and not self.paused:
+        if asked is not None and asked.what == "answer":
             return self._controlled(asked.trial)
         return None
 
@@ -522,7 +522,8 @@ class Runner:
     def _controlled(self, trial: Trial | None) -> Line | None:
         """Return the line that a button or a knob of the device stands for, if one does."""
         for control in self.device.take_controls():
-            if line := self.protocol.asks.controlled(control, trial):
+            line = self.protocol.asks.controlled(control, trial)
+            if line and self.is_shown and not self.paused:
                 return Line(line)
         return None
 

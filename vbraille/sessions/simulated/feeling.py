@@ -4,36 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from vbraille.sessions.simulated.observer import FeltFrames, Observer
 
-WIDTH, GAP, SPACING, CELL_GAP = "dot_width_mm", "dot_gap_mm", "dot_spacing_mm", "cell_gap_mm"
-LENGTHS = (WIDTH, GAP, SPACING, CELL_GAP)
+WIDTH, GAP, SPACING = "dot_width_mm", "dot_gap_mm", "dot_spacing_mm"
+LENGTHS = (WIDTH, GAP, SPACING)
 TIE = 0.04  # difference that counts as equal without noise, in units of the nominal length
-
-
-class DotPair(NamedTuple):
-    """Two neighbouring dot columns of a line, whose distance tells a length.
-
-    Parameters
-    ----------
-    columns
-        Number of dot columns that are shown of the line.
-    first
-        Number of the first of the two, from 0.
-    distance_mm
-        Distance between the two by the nominal distances.
-    cells
-        How many cells further the second one is: 0 in the same cell.
-    """
-
-    columns: int
-    first: int
-    distance_mm: float
-    cells: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +32,6 @@ class FeltTrial:
         Cells of these lines that are asked for.
     parameter
         Number in which stimuli differ; empty if strings are read.
-    pair
-        Dots by which a distance is told; None if there are none.
     turns
         How often the participant has turned the last stimulus.
     """
@@ -66,7 +42,6 @@ class FeltTrial:
     places: Sequence[int]
     asked: slice
     parameter: str
-    pair: DotPair | None = None
     turns: int = 0
 
     @property
@@ -119,13 +94,11 @@ class FeltTrial:
         return last / standard if standard > 0 else 0.0
 
     def _length_mm(self, exploration: FeltFrames) -> float:
-        dots_mm, pair = self.observer.dots_mm(exploration), self.pair
-        if self.parameter == WIDTH and len(dots_mm):
-            return float(dots_mm[0, 1] - dots_mm[0, 0])
-        if self.parameter == GAP and len(dots_mm) > 1:
-            return float(dots_mm[1, 0] - dots_mm[0, 1])
-        if pair is None or len(dots_mm) != pair.columns:
+        """Return the width of the first dot, or the way from it to the next one."""
+        dots_mm = self.observer.dots_mm(exploration)
+        if len(dots_mm) < (1 if self.parameter == WIDTH else 2):
             return 0.0
-        distance_mm = dots_mm[pair.first + 1, 0] - dots_mm[pair.first, 0]
-        more_mm = (distance_mm - pair.distance_mm) / max(pair.cells, 1)
-        return float(self.unit + more_mm)
+        start_mm, end_mm = dots_mm[0]
+        if self.parameter == WIDTH:
+            return float(end_mm - start_mm)
+        return float(dots_mm[1, 0] - (end_mm if self.parameter == GAP else start_mm))
