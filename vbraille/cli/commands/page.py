@@ -124,12 +124,14 @@ def _rowgap(book: Book) -> int:
 
 def _eight_dots(book: Book) -> str:
     """Sentence on a table of eight dots where only six can be written."""
-    from vbraille.translate import six_dot_table
+    from vbraille.translate import table_of
 
     table = book.table
     assert table is not None
-    other = None if table.info is None else six_dot_table(table.info.language)
-    instead = f"give --table {other}, which has six, or" if other else "give"
+    other = table_of(table.info.language)
+    instead = "give"
+    if other is not None and not other.eight_dots:
+        instead = f"give --table {other.name}, which has six, or"
     return (
         f"the table {table.name} has eight dots and BRF has six; "
         f"{instead} --format unicode, which writes all eight"
