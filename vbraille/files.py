@@ -89,8 +89,6 @@ def write_files(
     path = Path()
     with ExitStack() as named:
         for path, content in files:
-            if not path.name:
-                raise InputError(f"{path} is a directory; give the name of a file")
             check_unused(path, replace=replace)
             try:
                 named.enter_context(_reporting(path))
@@ -122,8 +120,12 @@ def check_unused(path: Path, *, replace: bool) -> None:
     Raises
     ------
     InputError
-        If something exists at the path that may not be replaced.
+        If something exists at the path that may not be replaced, or no file can be made there.
     """
+    if path.is_dir():
+        raise InputError(f"{path} is a directory; give the name of a file in it")
+    if not path.parent.is_dir():
+        raise InputError(f"there is no directory {path.parent}; make it, or use another")
     if not replace and os.path.lexists(path):
         raise InputError(f"{path} already exists; choose another name, or add {setting('force')}")
 

@@ -46,8 +46,6 @@ def new_file(path: Path | str, *, replace: bool = False) -> Iterator[NewFile]:
     path = Path(path)
     with whole_file(path, replace=True) as partial:
         try:
-            if path.is_dir():
-                raise InputError(f"{path} is a directory; give the name of a file in it")
             check_unused(path, replace=replace)
             target = _Target(partial)
         except OSError as error:

@@ -101,10 +101,6 @@ class TestSpellings:
 
 
 class TestMaps:
-    def test_arrays_of_one_length(self):
-        with pytest.raises(ValueError, match="must be of one length"):
-            Cells(np.zeros(2, np.uint8), np.zeros(3, np.int64), 3)
-
     def test_bare_cells_stand_for_themselves(self):
         assert [bare([7, 8]).source(n) for n in (0, 1)] == [(0, 1), (1, 2)]
 

@@ -258,27 +258,3 @@ def test_a_full_disk_under_the_output(text, arguments):
     assert done.returncode == 1
     assert done.stderr.splitlines()[-1] == "vbraille: No space left on device"
     assert "Traceback" not in done.stderr
-
-
-@pytest.mark.parametrize("arguments", ["page {}", "--help"])
-def test_what_is_printed_into_a_closed_output_is_not_said_to_be_done(text, arguments):
-    command = [*program.PROGRAM, *arguments.format(text).split()]
-    done = subprocess.run(
-        ["sh", "-c", 'exec "$@" >&-', "sh", *command],
-        check=False, stderr=subprocess.PIPE, encoding="utf-8",
-    )  # fmt: skip
-    assert done.returncode == 1
-    wanted = "vbraille: the output is closed; give it a file, or /dev/null"
-    assert done.stderr.splitlines()[-1] == wanted
-
-
-def test_closed_streams_are_no_fault(text):
-    shell = 'exec "$@" <&- >/dev/null 2>&-'
-    done = subprocess.run(["sh", "-c", shell, "sh", *program.PROGRAM, "page", text], check=False)
-    assert done.returncode == 0
-    shell = 'exec "$@" 2>&-'
-    done = subprocess.run(
-        ["sh", "-c", shell, "sh", *program.PROGRAM, "page", text, "--lines=0"],
-        check=False, capture_output=True,
-    )  # fmt: skip
-    assert (done.returncode, done.stdout) == (2, b"")

@@ -121,9 +121,7 @@ def test_axe_finds_nothing_in_a_reading(opens, reading, scheme):
     reading.state = replace(
         reading.state,
         lines=[],
-        scene=SceneShown(
-            "A house", "A house with a door.", 90, 60, png, off=["door"], off_image=png
-        ),
+        scene=SceneShown("A house", "A house with a door.", 90, 60, png),
         beside=BesideShown("sheared", reading.state.rows_shown, 0, 0.1, ["AAAA"] * 6),
         signals=[SignalShown("door", "1 open, 0 shut")],
         cards=[[CardShown("row 1, card 1", "face down"), CardShown("row 1, card 2", "turned up")]],

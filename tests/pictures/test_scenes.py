@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from vbraille.pictures.scenes import hidden_layers, small_png
-from vbraille.render.compiling import settled
+from vbraille.pictures.scenes import small_png
 from vbraille.render.labels import Assets
 from vbraille.scene.patterns import (
     Circle,
@@ -21,7 +20,7 @@ from vbraille.scene.patterns import (
     Uniform,
 )
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.signals import Inverse, Speed, Switch, packed
+from vbraille.scene.signals import Inverse, Speed, Switch
 
 
 def drawn(canvas, *elements):
@@ -59,25 +58,3 @@ BLEND = Group(
     parts=(Uniform(level=0.9), Uniform(level=0.4)),
     by=SignalLevel(name="view"),
 )
-
-
-@pytest.mark.parametrize(
-    ("elements", "state", "told", "ring", "field"),
-    [
-        ((RING, FIELD), 0, [("Field", "other")], 0, 0.5),
-        ((RING, FIELD), 1, [("Ring", "view")], 1, 0),
-        ((BLEND,), 1, [("", "view")], 0, 0),  # the first part is stronger
-        ((Uniform(factor="slow"),), 1, [], 0, 0),
-    ],
-)
-def test_layers_that_are_off_are_told_and_drawn_beyond_what_is_there(
-    elements, state, told, ring, field
-):
-    scene = Scene(canvas=CANVAS, elements=elements, signals=SIGNALS)
-    switches = packed({1: state}, SIGNALS)
-    hidden, every = hidden_layers(scene, switches)
-    assert [(one.title, name) for one, name in hidden] == told
-    content = small_png(every, Assets(), settled(scene, switches=switches))
-    with Image.open(io.BytesIO(content)) as image:
-        off = 1 - np.asarray(image)[[20, 40], [120, 40]] / 255  # the ring's top, and the field
-    assert off == pytest.approx([ring, field], abs=0.01)

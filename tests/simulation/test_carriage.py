@@ -52,13 +52,6 @@ def test_the_hand_reads_the_whole_travel_again_and_again(bench):
     assert np.diff(turns) == pytest.approx(READS_S * 1000, abs=3)
 
 
-def test_places_are_of_their_time_however_often_one_looks(bench):
-    bench.carriage.set_out()
-    bench.ways(0.001)
-    bench.now_ns += 1_234_000_000
-    assert bench.ways(0.001)[0] == pytest.approx(123.5)
-
-
 def test_setting_out_again_changes_nothing_under_way(bench):
     bench.carriage.set_out()
     bench.ways(1.001)

@@ -10,10 +10,8 @@ import pytest
 from tests.devices.latero.peers import simulated, until
 from tests.tiers import by_tier
 from vbraille.carriers import latero as arms
-from vbraille.devices.latero.wire import parse_answer
 from vbraille.errors import InputError
 from vbraille.simulation.controls import parse_moves
-from vbraille.simulation.lateroboard import LateroBoard
 from vbraille.simulation.laterosim import OFFSETS, LateroCarriage, LateroSimulator
 from vbraille.simulation.specs import parse_hand
 
@@ -126,13 +124,6 @@ def test_what_is_no_request_is_not_answered(latero, client):
     assert client.full([150] * 64)[0] == 0xCA
 
 
-def test_levels_beyond_rest_are_counted():
-    board = LateroBoard()
-    request = struct.pack(">BBBH5H", 0xCA, 0x11, 1, 0, 0, 0, 0, 0, 0) + bytes((151,)) * 64
-    board.receive(request.ljust(100, b"\xff"))
-    assert board.beyond == 64
-
-
 def test_its_buttons_are_low_while_they_are_pressed():
     with (
         simulated(script=parse_moves("1@0s-60s")) as latero,
@@ -155,13 +146,6 @@ def test_a_script_and_keys_press_its_buttons():
         until(lambda: client.full([150] * 64)[4] == 0x0000)
         until(lambda: said[-1:] == ["button 2: pressed"])
     assert [line for line in said if line.startswith("button")] == ["button 2: pressed"]
-
-
-def test_an_interface_that_is_away_says_0():
-    board = LateroBoard()
-    board.interface = False
-    request = struct.pack(">BBBH5H", 0xCA, 0x11, 1, 0, 0, 0, 0, 0, 0) + bytes(64)
-    assert parse_answer(board.receive(request.ljust(100, b"\xff"))).interface == 0
 
 
 def test_the_hand_reads_along_each_line_and_then_down():

@@ -101,11 +101,6 @@ def test_what_was_written_is_read(tmp_path_factory, steps):
     np.testing.assert_array_equal(read.x_mm, x_mm)
 
 
-def test_the_longest_gap_is_allowed_whatever_its_rounding(load):
-    assert MAX_GAP_S < 1.1 - 0.6
-    assert load(HEADER + "0.6,0\n1.1,1\n").motion.duration_s == pytest.approx(MAX_GAP_S)
-
-
 @pytest.mark.parametrize(
     ("text", "said"),
     [

@@ -66,22 +66,11 @@ class Cells:
         character, and one cell for several.
     end : int
         One past the last source character of the run.
-
-    Raises
-    ------
-    ValueError
-        If the two arrays differ in length.
     """
 
     masks: NDArray[np.uint8]
     starts: NDArray[np.int64]
     end: int
-
-    def __post_init__(self) -> None:
-        if self.masks.shape != self.starts.shape or self.masks.ndim != 1:
-            raise ValueError(
-                f"masks {self.masks.shape} and starts {self.starts.shape} must be of one length"
-            )
 
     @classmethod
     def bare(cls, masks: NDArray[np.uint8]) -> Cells:

@@ -12,7 +12,7 @@ import sys
 from contextlib import suppress
 from importlib import import_module
 from inspect import cleandoc
-from io import BufferedWriter, FileIO, RawIOBase, TextIOWrapper
+from io import TextIOWrapper
 
 import click
 
@@ -117,25 +117,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments[:1] == ["help"]:
         arguments = [*arguments[1:], "--help"]
     try:
-        sentence, code = _listen(arguments)
+        try:
+            EAR.listen()
+            _open_streams()
+            sentence, code = _run(arguments)
+        finally:
+            EAR.close()
+        if EAR.heard and code:
+            sentence, code = SAID, EXIT_CODE
     except (KeyboardInterrupt, Stopped):
         sentence, code = SAID, EXIT_CODE
     if sentence:
         with suppress(OSError):
             print(f"vbraille: {printable(' '.join(sentence.split()))}", file=sys.stderr)
     return _flush() or code
-
-
-def _listen(arguments: list[str]) -> tuple[str, int]:
-    """Run a command until it ends or a signal stops it; a sentence and the exit code."""
-    try:
-        EAR.listen()
-        _hold_descriptors()
-        _set_streams()
-        sentence, code = _run(arguments)
-    finally:
-        EAR.close()
-    return (SAID, EXIT_CODE) if EAR.heard and code else (sentence, code)
 
 
 def _run(arguments: list[str]) -> tuple[str, int]:
@@ -159,6 +154,8 @@ def _run(arguments: list[str]) -> tuple[str, int]:
     except BrokenPipeError:  # the program that read our output has enough
         return "", EXIT_CODE
     except OSError as error:
+        if error.errno == errno.EBADF:
+            return "the output is closed; give it a file, or /dev/null", 1
         return error.strerror or str(error), 1
     except Exception as error:
         from vbraille.logs import print_traceback
@@ -185,47 +182,20 @@ def _sentence(error: click.ClickException) -> str:
     return message
 
 
-def _hold_descriptors() -> None:
-    """Open the null device on standard descriptors that are closed.
+def _open_streams() -> None:
+    """Have all three streams, also where the caller closed one; text of any kind can be written.
 
-    A file that is opened next would stand there otherwise, and messages would go into it.
+    The null device stands on a closed descriptor: a file that is opened next would stand there
+    otherwise, and messages would go into it. What is written to a closed output fails.
     """
-    for descriptor in range(3):
-        try:
-            os.fstat(descriptor)
-        except OSError:
-            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)  # the lowest that is free
-
-
-def _set_streams() -> None:
-    """Have all three streams; those of output take any text, lone surrogates too."""
-    if sys.stdin is None:
-        sys.stdin = os.fdopen(0, closefd=False)
-    if sys.stdout is None:
-        sys.stdout = TextIOWrapper(BufferedWriter(_Closed()))
-    if sys.stderr is None:
-        sys.stderr = TextIOWrapper(FileIO(os.devnull, "w"))
+    for descriptor, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:
+            access = os.O_RDONLY if name == "stdout" else os.O_RDWR
+            os.set_inheritable(os.open(os.devnull, access), True)  # the lowest that is free
+            setattr(sys, name, os.fdopen(descriptor, "w" if descriptor else "r", closefd=False))
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(encoding="utf-8", errors="backslashreplace")
-
-
-class _Closed(RawIOBase):
-    """A standard output that the caller closed: the first writing fails, and later ones do not."""
-
-    def __init__(self) -> None:
-        self._said = False
-
-    def writable(self) -> bool:
-        """Return True, so that a writing can fail."""
-        return True
-
-    def write(self, content) -> int:
-        """Fail the first time."""
-        if not self._said:
-            self._said = True
-            raise OSError(errno.EBADF, "the output is closed; give it a file, or /dev/null")
-        return len(content)
 
 
 def _flush() -> int:

@@ -14,7 +14,7 @@ from vbraille.errors import InputError
 from vbraille.knobs import KNOBS, profile_values
 from vbraille.layout import Layout, cells_per_line
 from vbraille.render import MAPPINGS, single_row
-from vbraille.translate import Book, choose_table, has_tables, open_source, remarks
+from vbraille.translate import Book, choose_table, open_source, remarks, table_of
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def table_options(ctx: click.Context, own: str = "") -> tuple[str | None, int | 
         chosen |= {name: None for name in ("language", "grade") if name not in asked}
     elif "language" in asked or "grade" in asked:
         chosen["table"] = None
-    if not asked & {"language", "table"} and own and has_tables(own):
+    if not asked & {"language", "table"} and own and table_of(own):
         chosen |= {"language": own, "table": None}
     return chosen["language"], chosen["grade"], chosen["table"]
 
@@ -203,7 +203,8 @@ class Page:
         """Lines that are wanted; notes on the text are printed on standard error."""
         for line in self.layout.lines(self.first, self.last):
             self._given += 1
-            self.say_notes()
+            for note in self.layout.book.source.notes():
+                say(note, aside=True)
             if line.block not in self._seen[-1:]:
                 self._seen.append(line.block)
             yield line
@@ -214,13 +215,7 @@ class Page:
             return self.layout.progress(line)
         return self._given / (self.last - self.first + 1)
 
-    def say_notes(self) -> None:
-        """Print notes on the text that are new."""
-        for note in self.layout.book.source.notes():
-            say(note, aside=True)
-
-    def say_end(self) -> None:
-        """Print notes, and what of the lines was not shown."""
-        self.say_notes()
-        for sentence in remarks(self.layout.book, self._seen):
-            say(sentence, aside=True)
+    def remarks(self) -> Iterator[str]:
+        """Notes on the text that are new, and sentences on what of the lines was not shown."""
+        yield from self.layout.book.source.notes()
+        yield from remarks(self.layout.book, self._seen)

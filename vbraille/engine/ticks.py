@@ -229,11 +229,33 @@ def _decide(now, y_mm, rested, taking, numbers):
 
 
 @_compiled
-def _show(flags, share, part, numbers, table, scratch, at, output, held, target):
-    """Make the frame of a tick from the one before it.
+def _make(numbers, table, scratch, at, own, flags, part, output, held, target):
+    """Make the frame of a tick from the one before it, and compute the signals of its picture.
 
     The first tick of a change still sends the old frame, the last one the new one alone.
+
+    Parameters
+    ----------
+    numbers, table, scratch
+        The program that is wanted under the hand.
+    at : float64[AT]
+        Memory of the signals, and the time of the picture at the tick before.
+    own : float64[FLOATS]
+        Numbers of the tick's record.
+    flags, part
+        Of the record, too.
+    output, held, target : float64[rows, columns]
+        The frame of the tick before, which is changed, the one that the fade began with, and room
+        for another.
     """
+    before_s = at[work.TIME]
+    if own[X] == own[X]:  # its place is known
+        at[work.X], at[work.Y], at[work.THETA] = own[X], own[Y], own[THETA]
+    at[work.TIME], at[work.VX], at[work.VY] = own[SHOWN], own[VX], own[VY]
+    if numbers[work.KIND] == SCENE:
+        if at[work.TIME] == 0.0:
+            begin(numbers, at)
+        compute(numbers, at, max(at[work.TIME] - before_s, 0.0))
     if flags & _RESTED:
         output[:] = 0.0
     if flags & _CHANGED:
@@ -242,19 +264,10 @@ def _show(flags, share, part, numbers, table, scratch, at, output, held, target)
         target[:] = 0.0
     else:
         frame(numbers, table, scratch, part, at, target)
-    if share < 1.0:
-        blend(held, target, share, output)
+    if own[SHARE] < 1.0:
+        blend(held, target, own[SHARE], output)
     else:
         copy(target, output)
-
-
-@_compiled
-def _answer(numbers, at, before_s):
-    """Compute the signals of a tick, whose picture's own time was so much at the tick before."""
-    if numbers[work.KIND] == SCENE:
-        if at[work.TIME] == 0.0:
-            begin(numbers, at)
-        compute(numbers, at, max(at[work.TIME] - before_s, 0.0))
 
 
 @_compiled
@@ -308,7 +321,6 @@ def advance(
         now_ns = times_ns[n, 0]
         passed_ns = min(now_ns - now["time_ns"], now["step_ns"])
         now["time_ns"], now["flags"] = now_ns, 0
-        shown_before_s = now["shown_ns"] / NS_PER_S
         if now["shown"] != 0:
             now["shown_ns"] += passed_ns
         unsent_ns = now_ns - now["sent_ns"]
@@ -326,14 +338,11 @@ def advance(
         now["shown_s"] = now["shown_ns"] / NS_PER_S
         if placed:
             now["y_mm"] = y_mm
-            at[work.X], at[work.Y], at[work.THETA] = now["x_mm"], y_mm, now["theta_rad"]
         at[work.SWITCHES] = now["switches"]
-        at[work.TIME], at[work.VX], at[work.VY] = now["shown_s"], now["vx_mm_s"], now["vy_mm_s"]
-        _answer(numbers, at, shown_before_s)
         if not taking:
             output[:] = 0.0
-        flags, share, part = now["flags"], now["share"], now["part"]
-        _show(flags, share, part, numbers, table, scratch, at, output, held, target)
+        flags, part = now["flags"], now["part"]
+        _make(numbers, table, scratch, at, own_floats, flags, part, output, held, target)
         slot = (first + n) % ints.shape[0]
         for k in range(own_ints.shape[0]):
             ints[slot, k] = own_ints[k]
@@ -371,12 +380,8 @@ def replay(numbers, table, scratch, ints, floats, at, output, held, target, fram
         What the actuators did, to fill.
     """
     for n in range(ints.shape[0]):
-        before_s = at[work.TIME]
-        at[work.X], at[work.Y], at[work.THETA] = floats[n, X], floats[n, Y], floats[n, THETA]
-        at[work.TIME], at[work.VX], at[work.VY] = floats[n, SHOWN], floats[n, VX], floats[n, VY]
-        _answer(numbers, at, before_s)
-        flags, share, part = ints[n, FLAGS], floats[n, SHARE], ints[n, PART]
-        _show(flags, share, part, numbers, table, scratch, at, output, held, target)
+        flags, part = ints[n, FLAGS], ints[n, PART]
+        _make(numbers, table, scratch, at, floats[n], flags, part, output, held, target)
         if flags & _HELD:  # the actuators rested, though the loop goes on from its frame
             frames[n] = 0.0
         else:

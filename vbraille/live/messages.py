@@ -169,8 +169,6 @@ class SceneShown(msgspec.Struct, frozen=True):
         Address (``data:``) of its deflection map; white is rest. Empty where there is none.
     left_mm, top_mm
         Place on the canvas where the carriage is at 0, 0.
-    off, off_image
-        Layers that are off, each with the signal that hides it, and a map of these alone.
     """
 
     title: str
@@ -180,8 +178,6 @@ class SceneShown(msgspec.Struct, frozen=True):
     image: str = ""
     left_mm: float = 0.0
     top_mm: float = 0.0
-    off: list[str] = []
-    off_image: str = ""
 
 
 class BesideShown(msgspec.Struct, frozen=True):

@@ -11,14 +11,13 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec.structs import replace
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from vbraille.errors import InputError
 from vbraille.pictures.words import plain
-from vbraille.scene.patterns import Moving, SignalLevel
-from vbraille.scene.signals import Pulse, Switch, ordered
+from vbraille.scene.patterns import Moving
+from vbraille.scene.signals import Pulse
 from vbraille.scene.traversal import each, vibrations, waves_of
 from vbraille.wording import setting
 
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from vbraille.render.labels import Assets
-    from vbraille.scene.patterns import AnyPattern
     from vbraille.scene.scene import Canvas, Scene
 
 PIXELS_PER_MM = 4.0
@@ -197,39 +195,7 @@ def grays(deflections: NDArray[np.floating]) -> NDArray[np.uint8]:
     return levels
 
 
-def hidden_layers(scene: Scene, switches: int) -> tuple[list[tuple[AnyPattern, str]], Scene]:
-    """Find the layers of a scene that are off under a hand at rest.
-
-    Parameters
-    ----------
-    scene
-        A resolved scene.
-    switches
-        States of its switches, as `vbraille.scene.signals.packed` has them.
-
-    Returns
-    -------
-    list[tuple[AnyPattern, str]], Scene
-        The elements of which something is off, each with the signal that is 0 there; and the scene
-        with these signals at 1, as its switches and a hand at rest have it else.
-    """
-    from vbraille.render.compiling import SceneMap, settled  # loads the kernels
-
-    shown = settled(scene, switches=switches)
-    values = SceneMap(shown).signal_values(0.0, (0.0, 0.0), 0).tolist()
-    names = [one.name for one in ordered(shown.signals)]
-    zero = {name for name, value in zip(names, values, strict=False) if value == 0.0}
-    found: dict[AnyPattern, str] = {}
-    for element in scene.elements:
-        for part in each(element):
-            name = part.name if isinstance(part, SignalLevel) else part.factor
-            if name in zero:
-                found.setdefault(element, name)
-    every = {**shown.signals, **dict.fromkeys(found.values(), Switch(levels=(1.0, 1.0)))}
-    return list(found.items()), replace(shown, signals=every)
-
-
-def small_png(scene: Scene, assets: Assets, beyond: Scene | None = None) -> bytes:
+def small_png(scene: Scene, assets: Assets) -> bytes:
     """Make the deflection map of a scene as a PNG of 120 kB at most, for pages and recordings.
 
     What vibrates is as it is at the beginning, since noise would make the file larger.
@@ -238,17 +204,12 @@ def small_png(scene: Scene, assets: Assets, beyond: Scene | None = None) -> byte
     ----------
     scene, assets
         A resolved scene, and what it takes from image files and labels.
-    beyond
-        Scene of the same canvas beyond whose deflections alone the others are drawn; None for all.
     """
     canvas = scene.canvas
     area_mm2 = canvas.width_mm * canvas.height_mm
     per_mm = min(PIXELS_PER_MM, math.sqrt(_SMALL_PIXELS / area_mm2))
     while True:
         drawn = map_deflections(scene, assets, per_mm, noise_seed=None)
-        if beyond is not None:
-            drawn -= map_deflections(beyond, assets, per_mm, noise_seed=None)
-            np.maximum(drawn, 0.0, out=drawn)
         content = png(grays(drawn), per_mm)
         if len(content) <= _SMALL_BYTES:
             return content

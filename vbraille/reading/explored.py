@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from vbraille.display import Display
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.outputs import Output
 
@@ -39,6 +38,8 @@ class Explored:
     ----------
     where : Where
         Which commands there are.
+    display : Display
+        The actuators and the carriage.
     doing : str
         What is done while the array does not rest, such as "reading".
     prompt : Prompt or None
@@ -62,6 +63,7 @@ class Explored:
         self, device: ReadingDevice, outputs: Sequence[Output], key_set: str = "usual"
     ) -> None:
         self.device, self.outputs, self.key_set = device, outputs, key_set
+        self.display = device.display
         self.learning = self.done = False
         self.prompt: Prompt | None = None
         self.inside: Explored | None = None
@@ -103,11 +105,6 @@ class Explored:
         self.say(question)
 
     # What outputs show of it
-
-    @property
-    def display(self) -> Display:
-        """The actuators and the carriage."""
-        return self.device.display
 
     @property
     def text(self) -> str:

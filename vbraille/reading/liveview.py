@@ -24,7 +24,13 @@ from vbraille.live.messages import (
     Turn,
     ViewState,
 )
-from vbraille.live.states import array_shown, beside_shown, geometry_shown, line_shown, rows_shown
+from vbraille.live.states import (
+    array_shown,
+    beside_shown,
+    geometry_shown,
+    line_shown,
+    rows_shown,
+)
 from vbraille.reading.commands import Where, table
 from vbraille.reading.outputs import Cue, Output
 from vbraille.reading.surface import Part
@@ -39,7 +45,7 @@ if TYPE_CHECKING:
     from vbraille.reading.explored import Explored
 
 _MOST_SAID, _MOST_DRAWN = 20, 8
-_BEFORE, _AFTER = 2, 3  # lines around the one under the hand
+_AROUND = (-2, -1, 1, 2, 3)  # lines that are shown around the one under the hand, by their steps
 _EVERY = 2  # polls from one state to the next
 _NUMBER = 0xFFFF_FFFF  # as much of a line's number as a frame has room for
 _PLACES = {
@@ -65,7 +71,7 @@ class LiveOutput(Output):
         self._last: deque[str] = deque(maxlen=_MOST_SAID)
         self._said = self._polls = 0
         self._draw = lru_cache(_MOST_DRAWN)(partial(ThreadPoolExecutor(1).submit, _drawn))
-        self._images: dict[str, Any] = {}
+        self._image = ""  # of a picture
         self._watched, self._failed = 0, False
 
     def say(self, sentence: str, cue: Cue = Cue.NONE) -> None:  # noqa: ARG002 - cues are heard
@@ -164,37 +170,37 @@ class LiveOutput(Output):
 
     def _lines(self, reader: Any) -> list[LineShown]:
         """Lines to be drawn, from top to bottom: the page, or the line and some around it."""
-        pitch_mm, part = reader.style.geometry.line_pitch_mm, reader.part
-        rows = enumerate(reader.parts)
+        pitch_mm, line = reader.style.geometry.line_pitch_mm, reader.line
+        rows = {row: part for row, part in enumerate(reader.parts) if part is not None}
         if not reader.rows:
-            steps = range(-_BEFORE, _AFTER + 1)
-            near = ((step, reader.layout.beside(part.line, step)) for step in steps)
-            rows = (
-                (step, line and Part(line, part.width) if step else part) for step, line in near
-            )
+            near = ((step, reader.layout.beside(line, step)) for step in _AROUND)
+            rows |= {step: Part(other, reader.width) for step, other in near if other is not None}
         return [
             line_shown(
-                each.line, first=each.first, count=len(each),
-                top_mm=row * pitch_mm, number=each.line.id & _NUMBER, under=each is part,
+                part.line, first=part.first, count=len(part), top_mm=row * pitch_mm,
+                number=part.line.id & _NUMBER, under=row == reader.row,
             )
-            for row, each in rows
-            if each is not None
+            for row, part in sorted(rows.items())
         ]  # fmt: skip
 
     def _picture(self, picture: Any) -> dict[str, Any]:
         from vbraille.pictures.scenewords import signal_words
 
-        shown, aperture = picture.shown, picture.aperture
-        # What was drawn before stays until this is.
-        self._images = self._drawn_of(shown, self._device.engine.switches) or self._images
+        shown, aperture, canvas = picture.shown, picture.aperture, picture.shown.scene.canvas
+        drawing = self._draw(shown, self._device.engine.switches)
+        if drawing.done():  # what was drawn before stays until this is
+            self._image = drawing.result()
         return {
             "title": shown.title,
             "place": "" if picture.spot is None else f"here: {picture.spot.element.name}",
-            "scene": _scene_shown(shown, self._images, aperture.left_mm, aperture.top_mm),
+            "scene": SceneShown(
+                shown.title, shown.scene.description, canvas.width_mm, canvas.height_mm,
+                self._image, aperture.left_mm, aperture.top_mm,
+            ),
             "signals": [
                 SignalShown(name, signal_words(one)) for name, one in shown.scene.signals.items()
             ],
-        }
+        }  # fmt: skip
 
     def _game(self, game: Any) -> dict[str, Any]:
         from vbraille.reading.game import COLUMNS
@@ -213,27 +219,21 @@ class LiveOutput(Output):
         }
 
     def _screen(self, screen: Any) -> dict[str, Any]:
-        style, cells = screen.style, screen.line_masks.size
-        pitch_mm, texts = style.geometry.line_pitch_mm, screen.talk.text
-        places = [(cell, cell + 1) for cell in range(cells)]
+        style, cells, talk = screen.style, screen.line_masks.size, screen.talk
+        pitch_mm, places = style.geometry.line_pitch_mm, [(n, n + 1) for n in range(cells)]
         return {
             "title": "the screen",
             "geometry": geometry_shown(style.geometry),
             "rows_shown": rows_shown(style, self._device.display),
             "lines": [
                 LineShown(
-                    row + 1, texts[row * cells : (row + 1) * cells], 0.0, row * pitch_mm,
+                    row + 1, talk.text[row * cells : (row + 1) * cells], 0.0, row * pitch_mm,
                     masks.tolist(), places, row == screen.row,
                 )
-                for row, masks in enumerate(screen.talk.masks)
+                for row, masks in enumerate(talk.masks)
             ],
             "place": screen.doing,
         }  # fmt: skip
-
-    def _drawn_of(self, loaded: LoadedScene, switches: int) -> dict[str, Any]:
-        """Images of a picture as its switches stand; none until they are drawn."""
-        drawing = self._draw(loaded, switches)
-        return drawing.result() if drawing.done() else {}
 
 
 def _offered(what: Explored) -> list[Any]:
@@ -241,36 +241,12 @@ def _offered(what: Explored) -> list[Any]:
     return [one for one in table(what.where) if one.steers]
 
 
-def _scene_shown(
-    loaded: LoadedScene, images: dict[str, Any], left_mm: float, top_mm: float
-) -> SceneShown:
-    """Picture from above, with its images."""
-    canvas, words = loaded.scene.canvas, loaded.scene.description
-    return SceneShown(
-        loaded.title, words, canvas.width_mm, canvas.height_mm,
-        left_mm=left_mm, top_mm=top_mm, **images,
-    )  # fmt: skip
-
-
-def _drawn(loaded: LoadedScene, switches: int) -> dict[str, Any]:
-    """Draw a scene as its switches have it, and the layers that are off."""
-    from vbraille.pictures.index import label_of
-    from vbraille.pictures.scenes import hidden_layers, small_png
+def _drawn(loaded: LoadedScene, switches: int) -> str:
+    """Draw a scene as its switches have it, and give the image's address."""
+    from vbraille.pictures.scenes import small_png
     from vbraille.render.compiling import settled
-
-    def address(*scenes: Any) -> str:
-        drawn = small_png(scenes[0], loaded.assets, *scenes[1:])
-        return f"data:image/png;base64,{base64.b64encode(drawn).decode()}"
 
     scene = loaded.scene
     shown = settled(scene, switches=switches) if scene.signals else scene
-    images: dict[str, Any] = {"image": address(shown)}
-    if not scene.signals:
-        return images
-    hidden, every = hidden_layers(scene, switches)
-    off = [
-        f"{'' if element.factor == name else 'part of '}{label_of(element) or 'a layer'} "
-        f"(signal {name})"
-        for element, name in hidden
-    ]
-    return images | {"off": off, "off_image": address(every, shown)} if off else images
+    drawn = base64.b64encode(small_png(shown, loaded.assets)).decode()
+    return f"data:image/png;base64,{drawn}"

@@ -273,6 +273,7 @@ class Picture(Explored):
 
         Where the place is out of reach, the picture is moved so that it is within.
         """
+        self.say(f"going to: {name}" if self.device.steered else name)
         brought = self.aperture.reaching(*to)
         if brought != self.aperture:
             self._look_from(brought)
@@ -294,7 +295,6 @@ class Picture(Explored):
     def _go_to(self, number: int) -> None:
         """Go to an element, or say the way there."""
         self._element, element = number, self.index.elements[number]
-        self.say(f"going to: {element.name}" if self.device.steered else element.name)
         self._lead(element.name, self.index.point_on(element))
 
     # Commands: what is said
@@ -418,7 +418,6 @@ class Picture(Explored):
     def middle(self) -> None:
         """Go to the middle of the picture."""
         canvas = self.shown.scene.canvas
-        self.say("going to: middle")
         self._lead("middle", (canvas.width_mm / 2, canvas.height_mm / 2))
 
     def move(self, right_mm: float, down_mm: float) -> None:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.cells import dots_of
 from vbraille.errors import InputError
-from vbraille.layout import Layout, cells_per_line
+from vbraille.layout import Layout
 from vbraille.reading.commands import Where
 from vbraille.reading.hand import HELD, HandWatch
 from vbraille.reading.outputs import Cue
 from vbraille.reading.places import around, nearest
-from vbraille.reading.surface import MOST_CELLS, Part, Surface
+from vbraille.reading.surface import Part, Surface
 
 if TYPE_CHECKING:
     import re
@@ -148,6 +148,11 @@ class Reader(Surface):
         return self.part.line
 
     @property
+    def lines(self) -> list[Line]:
+        """Lines that are shown."""
+        return [part.line for part in self.parts if part is not None]
+
+    @property
     def text(self) -> str:
         """Text of the line under the hand."""
         return self.line.text.strip()
@@ -197,9 +202,9 @@ class Reader(Surface):
 
     def beside(self, step: int) -> Line | None:
         """Line after the one under the hand, or before it where the step is -1."""
-        return self.neighbour(self.line, step)
+        return self._neighbour(self.line, step)
 
-    def neighbour(self, line: Line, step: int) -> Line | None:
+    def _neighbour(self, line: Line, step: int) -> Line | None:
         """Line after one, or before it, of those that are read."""
         following = self.layout.beside(line, step)
         while following is not None and self.skip_blank and not following.masks.any():
@@ -220,8 +225,24 @@ class Reader(Surface):
         first = max(cell, 0) // self.width * self.width
         if under and finger is not None:
             first = cell - min(max(finger, 0), self.width - 1)
-        self.put(Part(line, self.width, first))
+        row = self.finger_row if 0 <= self.finger_row < self.rows else 0
+        self._lay(Part(line, self.width, first), row)
         self._arrive(another=before != line)
+
+    def _lay(self, part: Part, row: int) -> None:
+        """Show a part of a line, on a page in a row with the lines around it."""
+        above = self._beyond(part, -1, row)[::-1]
+        below = self._beyond(part, 1, self.rows - row - 1)
+        self.show_parts([*[None] * (row - len(above)), *above, part, *below], row)
+
+    def _beyond(self, part: Part, step: int, most: int) -> list[Part]:
+        """Parts of the lines after that of a part, or before it."""
+        # Where a part was moved under the finger, the others begin where they do.
+        first = part.first if part.first >= 0 and part.first % part.width == 0 else 0
+        line, found = part.line, list[Part]()
+        while len(found) < most and (line := self._neighbour(line, step)) is not None:
+            found.append(Part(line, part.width, first))
+        return found
 
     def _arrive(self, *, another: bool = True) -> None:
         """Tell of the line that is under the hand now."""
@@ -307,16 +328,27 @@ class Reader(Surface):
             self.done = True
 
     def pan(self, step: int) -> bool:
-        """Show the next part of the line, or the one before; False if there is none."""
-        panned = self.pan_on(step)
-        if panned:
-            self._arrive(another=False)
-        return panned
+        """Show the next parts of the lines, or those before; False if there are none."""
+        here = self.part
+        first = max(here.first + step * here.width, 0)
+        if (step < 0 and here.first <= 0) or first >= max(map(len, self.lines)):
+            return False
+        moved = [part and Part(part.line, part.width, first) for part in self.parts]
+        self.show_parts(moved, self.row)
+        self._arrive(another=False)
+        return True
 
     def turn_page(self, step: int) -> bool:
         """Show the next page of the surface, or the one before; False if there is none."""
-        if not self.turn_over(step):
+        line = self._neighbour(self.lines[-1 if step > 0 else 0], step)
+        if line is None:
             return False
+        part = Part(line, self.width)
+        if step < 0:
+            part = [part, *self._beyond(part, -1, self.rows - 1)][-1]
+        self._lay(part, 0)
+        if 0 <= self.finger_row < len(self.parts):
+            self.enter(self.finger_row)
         if self.rows:
             first, *others = (self.layout.number(line) for line in self.lines)
             lines = f"lines {first} to {others[-1]}" if others else f"line {first}"
@@ -397,13 +429,11 @@ class Reader(Surface):
 
     def use(self, style: BrailleStyle) -> None:
         """Show lines in a style, laid out anew where that changes their length."""
-        place, under = self.place, self.cell is not None
-        width = min(cells_per_line(style.geometry, self.display), MOST_CELLS)
-        pitch_mm = style.geometry.cell_pitch_mm
-        if (self.style.geometry.cell_pitch_mm, self.width) == (pitch_mm, width):
-            self.show_in(style)
+        place, under, before = self.place, self.cell is not None, self.sizes
+        self.fit(style)
+        if self.sizes == before:
+            self.render()
         else:
-            self.fit(style)
             self.lay_out(self.book, place, under=under)
 
     def lay_out(self, book: Book, place: int, *, under: bool) -> None:

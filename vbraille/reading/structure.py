@@ -28,8 +28,9 @@ def _go(reader: Reader, step: int, thing: str, said: Callable[[Block], str]) -> 
     """Go to the next block of which something can be said, or to the one before."""
     place = reader.line.place
     for block in reader.book.source.blocks(reader.line.block.number, step):
-        if (block.start - place) * step > 0 and not block.continues and said(block):
-            reader.jump(block.start, said(block))
+        words = "" if block.continues else said(block)
+        if words and (block.start - place) * step > 0:
+            reader.jump(block.start, words)
             return
     reader.refuse_step(step, thing)
 

@@ -99,6 +99,8 @@ class Surface(Explored):
         Number by which ticks name what is shown, which grows.
     reached : bool
         Whether the hand has been at the end of the line.
+    finger_row : int
+        Row in which the finger is now; -1 if it is above the page.
     """
 
     def __init__(
@@ -114,12 +116,8 @@ class Surface(Explored):
         self.by_hand = by_hand
         self.parts: Sequence[Part | None] = []
         self.row = self.number = 0
-        self._finger_row = -1  # in which the finger is now; -1 if it is above the page
+        self.finger_row = -1
         self.fit(style)
-
-    def neighbour(self, line: Any, step: int) -> Any:  # noqa: ARG002 - a screen has no more
-        """Line after one, or before it where the step is -1; None at an end."""
-        return None
 
     def fit(self, style: BrailleStyle) -> None:
         """Show what comes in a style.
@@ -135,16 +133,17 @@ class Surface(Explored):
         self.style = style
 
     @property
+    def sizes(self) -> tuple[float, ...]:
+        """Numbers and distances of cells and rows: if they stay, so does what is shown where."""
+        geometry = self.style.geometry
+        return geometry.cell_pitch_mm, self.width, self.rows and geometry.line_pitch_mm, self.rows
+
+    @property
     def part(self) -> Part:
         """Part of a line that is read."""
         part = self.parts[self.row]
         assert part is not None, "a row with a line"
         return part
-
-    @property
-    def lines(self) -> list[Any]:
-        """Lines that are shown."""
-        return [part.line for part in self.parts if part is not None]
 
     @property
     def end_mm(self) -> float:
@@ -153,72 +152,30 @@ class Surface(Explored):
 
     # What is shown
 
-    def put(self, part: Part) -> None:
-        """Put a part of a line under the hand; on a page into the row of the finger."""
-        self._lay(part, self._finger_row if 0 <= self._finger_row < self.rows else 0)
-
-    def turn_over(self, step: int) -> bool:
-        """Show the next page, or the one before; False if there are no lines."""
-        line = self.neighbour(self.lines[-1 if step > 0 else 0], step)
-        if line is None:
-            return False
-        if step < 0:
-            line = [line, *self._beyond(line, -1, self.rows - 1)][-1]
-        self._lay(Part(line, self.width), 0)
-        if 0 <= self._finger_row < len(self.parts):
-            self._enter(self._finger_row)
-        return True
-
-    def _lay(self, part: Part, row: int) -> None:
-        """Show a part of a line, on a page in a row with the lines around it."""
-        # Where a part was moved under the finger, the other lines begin where they do.
-        first = part.first if part.first >= 0 and part.first % part.width == 0 else 0
-        above = self._beyond(part.line, -1, row)[::-1]
-        below = self._beyond(part.line, 1, self.rows - row - 1)
-        over, under = ([Part(line, part.width, first) for line in of] for of in (above, below))
-        self.show_parts([*[None] * (row - len(over)), *over, part, *under], row)
-
-    def _beyond(self, line: Any, step: int, most: int) -> list[Any]:
-        """Lines after one, or before it."""
-        found: list[Any] = []
-        while len(found) < most and (line := self.neighbour(line, step)) is not None:
-            found.append(line)
-        return found
-
-    def pan_on(self, step: int) -> bool:
-        """Show the next parts of the lines, or those before; False if there are none."""
-        here = self.part
-        first = max(here.first + step * here.width, 0)
-        if (step < 0 and here.first <= 0) or first >= max(map(len, self.lines)):
-            return False
-        moved = [part and Part(part.line, part.width, first) for part in self.parts]
-        self.show_parts(moved, self.row)
-        return True
-
     def show_in(self, style: BrailleStyle) -> None:
         """Show the same in another style; it fades in under the finger."""
-        before = self.style.geometry.line_pitch_mm, self.rows
+        before = self.sizes
         self.fit(style)
-        if self.rows and before != (style.geometry.line_pitch_mm, self.rows):
-            self.put(self.part)
+        if self.sizes == before:
+            self.render()
         else:
-            self._render()
+            self.show_parts(self.parts, self.row)
 
     def show_parts(self, parts: Sequence[Part | None], row: int) -> None:
         """Show parts of lines, one below the other, of which one is read."""
         self.parts = parts
         self.number += 1
         self.begin_row(row)
-        self._render()
+        self.render()
         self.steer()
 
     def change(self, parts: Sequence[Part]) -> None:
         """Show other cells in the same rows; the hand goes on where it is."""
         before_mm = self.end_mm
         self.parts = parts
-        self._render()
+        self.render()
         if self.end_mm != before_mm:
-            self._enter(self.row)
+            self.enter(self.row)
             self.steer()
 
     def steer(self) -> None:
@@ -232,7 +189,8 @@ class Surface(Explored):
         foot_mm = min(below_mm, (_below_pitches(self.style) + 0.5) * geometry.line_pitch_mm)
         self.device.give(ReadPage(lines, geometry.line_pitch_mm, end_mm, foot_mm * self.by_hand))
 
-    def _render(self) -> None:
+    def render(self) -> None:
+        """Show the parts as they are in the style now."""
         if self.rows:
             blank = np.zeros(0, np.uint8)
             masks = [blank if part is None else part.masks for part in self.parts]
@@ -247,9 +205,9 @@ class Surface(Explored):
         """Begin to follow a hand that has read nothing of what is shown."""
         self._near, self._near_ns, self._below_ns = row, 0, 0
         self._begun = False  # whether the finger was on the page since it came
-        self._enter(row)
+        self.enter(row)
 
-    def _enter(self, row: int) -> None:
+    def enter(self, row: int) -> None:
         """Begin to follow the finger along the line of a row."""
         self.row = row
         self.reached = self._left = False
@@ -259,7 +217,7 @@ class Surface(Explored):
         """Look where the hand went; None if nothing of what is shown was to be felt."""
         shown = ticks[ticks["line"] == self.number]
         if self.rows and shown.size and not math.isnan(shown["y_mm"][-1]):
-            self._finger_row = int(shown["part"][-1])
+            self.finger_row = int(shown["part"][-1])
         felt = shown[shown["flags"] & _PAUSED == 0]
         on = felt[felt["flags"] & _UNFELT == 0]
         if not on.size:  # it is paused, or the device was away or at rest by itself
@@ -277,7 +235,7 @@ class Surface(Explored):
 
     def _follow_page(self, now_ns: int, along: Followed) -> Followed:
         """Look which row of a page the finger is in, or whether it stays below the last."""
-        row, on_line = self._finger_row, along._replace(done=False)
+        row, on_line = self.finger_row, along._replace(done=False)
         if row < len(self.parts):
             self._begun, self._below_ns = self._begun or row >= 0, 0
         elif self._begun:
@@ -288,7 +246,7 @@ class Surface(Explored):
         there = 0 <= row < len(self.parts) and self.parts[row] is not None
         if row == self.row or not there or now_ns - self._near_ns < _ON_NS:
             return on_line
-        self._enter(row)
+        self.enter(row)
         return Followed(line=True)
 
 

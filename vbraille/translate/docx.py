@@ -5,12 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from vbraille.translate.numbering import BULLET, whole
+from vbraille.translate.numbering import BULLET, Level, Numbering, whole
 from vbraille.translate.office import (
     Document,
-    Level,
     Look,
-    Numbering,
     font_of,
     heading,
     put_picture,

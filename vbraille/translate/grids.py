@@ -27,11 +27,6 @@ class _Cell(NamedTuple):
     blocks: list[Block]
     whole: Block
 
-    @property
-    def is_header(self) -> bool:
-        role = self.element.get("role")
-        return self.element.name == "th" or role in ("columnheader", "rowheader")
-
     def spans(self, what: str) -> int:
         """Number of the columns or rows that it covers, by its attribute."""
         return min(max(whole(self.element.get(what)), 1), _MOST)
@@ -67,15 +62,15 @@ def table_blocks(
         if all(each is EMPTY for each in wholes):
             continue
         # The cell that heads a row is said with the row, and not above its cells.
-        own = row[0].element.get("id") if row and row[0].is_header else ""
+        own = row[0].element.get("id") if row and row[0].element.name == "th" else ""
         told = []
         for column, cell in enumerate(shown):
             named = cell.element.get("headers").split() if cell else []
             said = " ".join(texts[name] for name in named if name in texts and name != own)
             told.append(said if named else headers.get(column, ""))
         block = joined(wholes, BETWEEN)
-        named = any(cell.is_header for cell in row) and len(row) > 1
-        if is_head or (named and all(cell.is_header or not cell.whole.text for cell in row)):
+        kinds = {cell.element.name for cell in row if cell.whole.text}
+        if is_head or (kinds == {"th"} and len(row) > 1):
             for column, cell in enumerate(line):
                 text = cell.whole.text if cell else ""
                 headers[column] = f"{headers.get(column, '')} {text}".strip()

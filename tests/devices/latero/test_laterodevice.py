@@ -12,7 +12,6 @@ import pytest
 from tests.devices.latero.peers import address_of, simulated, until
 from vbraille.devices.events import Back, Button, Placing, Silent
 from vbraille.devices.latero.device import DISPLAY, open_latero
-from vbraille.devices.latero.wire import REST
 from vbraille.devices.registry import open_device
 from vbraille.errors import DeviceError, InputError
 from vbraille.simulation.controls import parse_moves
@@ -31,10 +30,6 @@ def latero():
 def pressed(events):
     """Presses of the right button."""
     return [e for e in events if isinstance(e, Button) and e.pressed and e.number == 2]
-
-
-def test_its_levels_are_those_of_a_blade():
-    assert DISPLAY.levels == REST + 1
 
 
 def ticks(device, frame=FELT, seconds=0.1, found=None):

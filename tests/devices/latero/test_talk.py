@@ -247,15 +247,6 @@ def test_levels_are_those_of_the_source(deflections):
     assert np.abs(bench.board.levels.reshape(8, 8) - 150 * (1 - bench.frame)).max() <= 0.5 + 1e-9
 
 
-def test_blade_8_row_plus_column_is_that_of_the_frame():
-    bench = Bench()
-    bench.frame = np.zeros((8, 8))
-    bench.frame[2, 5] = 1.0
-    bench.run(3)
-    assert np.flatnonzero(bench.board.levels != 150).tolist() == [21]
-    assert bench.board.levels[21] == 0
-
-
 def test_the_buttons():
     bench = Bench().run(50)
     bench.board.buttons = 0b10

@@ -92,7 +92,8 @@ def _table(ctx: click.Context, kind: str, chosen: dict[str, Any]) -> FigureTable
         return series.mapping(model.style, **_letter(ctx, chosen["letter"]), model=model)
     page = Page(ctx, build_book(ctx), model)
     lines = list(islice(page.lines(), None if page.last else _LINES))
-    page.say_end()
+    for sentence in page.remarks():
+        say(sentence, aside=True)
     x_mm = chosen["x"] + model.display.span_mm / 2
     return series.page(lines, model, x_mm=x_mm, first=page.first)
 

@@ -61,7 +61,8 @@ def _render_reading(ctx: click.Context, chosen: dict[str, Any]) -> None:
         chosen["out"], page.lines(), page.layout, model, hand, chosen["rate"], per_page,
         replace_file=chosen["force"], done=lambda line: progress.at(page.progress(line)),
     )  # fmt: skip
-    page.say_end()
+    for sentence in page.remarks():
+        say(sentence, aside=True)
     lines, frames = count(rendered.lines, "line"), count(rendered.frames, "frame")
     say(f"rendered: {lines}, {frames}, {rendered.seconds:.1f} s of reading")
 

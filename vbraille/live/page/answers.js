@@ -1,25 +1,15 @@
-/** What answers: the signals of a picture, its layers that are off, and the cards of a game. */
+/** What answers: the signals of a picture, and the cards of a game. */
 
 import { button, byId, fixed, html, write } from "./elements.js";
 
-/** The signals of a picture as a table, and which layers its switches hide. */
+/** The signals of a picture as a table. */
 export class Signals {
   #rows = [];
   #made = "";
 
-  constructor() {
-    byId("show-off").addEventListener("click", () => {
-      const shown = !document.body.classList.toggle("bare");
-      byId("show-off").setAttribute("aria-pressed", String(shown));
-    });
-  }
-
   show(state) {
     const { signals } = state;
     byId("signals").hidden = signals.length === 0;
-    const off = state.scene?.off ?? [];
-    byId("off").hidden = off.length === 0;
-    write(byId("off-words"), off.length ? `Layers that are off: ${off.join(", ")}.` : "");
     const made = JSON.stringify(signals);
     if (made === this.#made) return;
     this.#made = made;

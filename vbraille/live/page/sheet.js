@@ -19,11 +19,11 @@ const whole = (px) => Math.round(px * devicePixelRatio) / devicePixelRatio;
 
 const circle = (x, y, r) => `M${(x - r).toFixed(2)} ${y.toFixed(2)}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
 
-/** A tactile picture from above, on its canvas, with the layers that are off drawn faintly. */
+/** A tactile picture from above, on its canvas. */
 function picture(scene) {
   const at = { x: -scene.left_mm, y: -scene.top_mm, width: scene.width_mm, height: scene.height_mm };
-  const image = (href, kind) => (href ? [svg("image", { ...at, href, class: kind, preserveAspectRatio: "none" })] : []);
-  return svg("g", { class: "scene" }, svg("rect", { class: "canvas", ...at }), ...image(scene.image, "on"), ...image(scene.off_image, "off"));
+  const image = scene.image ? [svg("image", { ...at, href: scene.image, class: "on", preserveAspectRatio: "none" })] : [];
+  return svg("g", { class: "scene" }, svg("rect", { class: "canvas", ...at }), ...image);
 }
 
 /** The first and the last cell of a piece of the print; null if it has none. */

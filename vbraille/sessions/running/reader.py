@@ -17,8 +17,7 @@ from vbraille.sessions.planning.shown import make_shown
 from vbraille.sessions.planning.trial import Trial
 from vbraille.sessions.planning.values import Share
 from vbraille.sessions.running.answers import Answers, Asked, Line
-from vbraille.sessions.simulated.feeling import FeltTrial
-from vbraille.sessions.simulated.matching import differences, most_like
+from vbraille.sessions.simulated.feeling import FeltTrial, differences, most_like
 from vbraille.sessions.simulated.observer import Observer
 
 
