@@ -32,9 +32,7 @@ class _Cell(NamedTuple):
         return min(max(whole(self.element.get(what)), 1), _MOST)
 
 
-def table_blocks(
-    table: Element, read: Callable[[Element], list[Block]], *, lays_out: bool
-) -> Iterator[Block]:
+def table_blocks(table: Element, read: Callable[[Element], list[Block]]) -> Iterator[Block]:
     """Rows of a table; or the blocks of its cells, if it only puts them beside each other.
 
     Parameters
@@ -43,12 +41,11 @@ def table_blocks(
         Element of the table.
     read
         Function that reads the blocks of a cell.
-    lays_out
-        Whether the table says that it is none.
     """
     rows = list(_rows(table, read))
     cells = [cell for _, row in rows for cell in row if cell.element.name != "above"]
     kinds = [block.kind for cell in cells for block in cell.blocks]
+    lays_out = bool(table.words & {"presentation", "none"})
     if lays_out or len(cells) <= 1 or any(kind in _LAYING_OUT for kind in kinds):
         for cell in cells:
             yield from cell.blocks

@@ -414,8 +414,7 @@ class Walker:
         for caption in element.elements:
             if caption.name == "caption":
                 self._walk(caption)
-        lays_out = bool(element.words & {"presentation", "none"})
-        for block in table_blocks(element, self._cell, lays_out=lays_out):
+        for block in table_blocks(element, self._cell):
             if block.kind is BlockKind.ROW:
                 block = block.replace(group=group, language=self._role.language)
             self._put(block)

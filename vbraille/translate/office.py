@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from itertools import takewhile
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from vbraille.translate.archive import Archive
 from vbraille.translate.html import tree_blocks
@@ -101,8 +101,8 @@ class Document:
 
     names: dict[str, Any]
 
-    def __init__(self, source: Source) -> None:
-        self.archive = Archive(source.stream, source.name)
+    def __init__(self, source: Source, stream: BinaryIO | None = None) -> None:
+        self.archive = Archive(stream or source.stream, source.name)
         self.body = Element("body")
         self.styles: dict[str, Look] = {}
         self.lists: dict[str, Numbering] = {}
