@@ -199,7 +199,7 @@ class Reader(Surface):
         """Name of the line in sentences: "line 12", or where it is in a text not yet counted."""
         if self.is_counted(self.line):
             return f"line {self.layout.number(self.line)}"
-        return f"at {100 * self.layout.progress(self.line):.0f} percent"
+        return f"at {100 * self.book.source.progress(self.line.place):.0f} percent"
 
     def is_counted(self, line: Line) -> bool:
         """Tell whether the number of a line is known, or soon found."""
