@@ -19,10 +19,7 @@ MODELS = {model["name"]: model for model in MADE["models"]}
 
 
 def quest_of(model):
-    if model["family"].startswith("nearer"):
-        observer = nearer(log=model["family"].endswith("log"))
-    else:
-        observer = psychometric(model["family"])
+    observer = nearer if model["family"] == "nearer" else psychometric(model["family"])
     return Quest(Grid(observer, model["axes"]), list(product(*model["stimuli"])))
 
 

@@ -42,6 +42,7 @@ def test_keys_do_not_leave_the_lines_that_are_read():
         assert reading.press("p") == ["no previous line"]
         assert reading.press("n", "n") == ["line 4", "line 5"]
         assert reading.press("n") == ["no next line"]
+        assert reading.press("<", ">") == ["line 3", "line 5"]
         reading.press("g")
         assert reading.type("40%")[-1] == "outside the lines being read"
 

@@ -1,5 +1,6 @@
 """Word processors' files, EPUB, plain text and braille files as blocks."""
 
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
@@ -346,8 +347,10 @@ def test_rtf_is_read_as_libreoffice_converts_it(monkeypatch, tmp_path):
     )
     office.chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:/bin:/usr/bin")
-    source = opened(rb"{\rtf1 One\par}", "a.rtf")
+    content = rb"{\rtf1 One\par}"
+    source = opened(content, "a.rtf")
     assert [(block.kind.value, block.text) for block in source.blocks()] == [("heading", "One")]
+    assert source.sha256() == sha256(content).hexdigest()
     assert source.notes() == []
 
 
@@ -392,14 +395,12 @@ def test_a_source_is_read_as_far_as_it_is_asked_for():
 
 
 def test_the_file_s_digest_is_that_of_its_bytes(tmp_path):
-    import hashlib
-
     path = tmp_path / "a.txt"
     path.write_text("one")
-    assert open_source(str(path)).sha256() == hashlib.sha256(b"one").hexdigest()
+    assert open_source(str(path)).sha256() == sha256(b"one").hexdigest()
     archive = tmp_path / "a.docx"
     archive.write_bytes(docx(paragraph(run("one"))))
-    assert open_source(str(archive)).sha256() == hashlib.sha256(archive.read_bytes()).hexdigest()
+    assert open_source(str(archive)).sha256() == sha256(archive.read_bytes()).hexdigest()
 
 
 def test_unlike_books_are_named():

@@ -27,8 +27,6 @@ F grows from 0 to 1, with a threshold t and a spread s:
 is judged with normal noise of standard deviation s:
 
     p(first) = λ / 2 + (1 - λ) Φ((|x₂ - μ| - |x₁ - μ|) / (s √2)).                            (5)
-
-On a log scale x and μ stand for their natural logarithms, and s is a share of them.
 """
 
 from __future__ import annotations
@@ -84,16 +82,10 @@ def psychometric(shape: str, *, falls: bool = False) -> Observer:
     return positive
 
 
-def nearer(*, log: bool = False) -> Observer:
+def nearer(first: Floats, second: Floats, centre: Floats, spread: Floats, lapse: Floats) -> Floats:
     """Return equation (5), of the first and second value, centre, spread and lapse."""
-
-    def positive(first: Floats, second: Floats, centre: Floats, spread: Floats, lapse: Floats):
-        if log:
-            first, second, centre = np.log(first), np.log(second), np.log(centre)
-        further = np.abs(second - centre) - np.abs(first - centre)
-        return lapse / 2 + (1 - lapse) * phi(further / (spread * math.sqrt(2)))
-
-    return positive
+    further = np.abs(second - centre) - np.abs(first - centre)
+    return lapse / 2 + (1 - lapse) * phi(further / (spread * math.sqrt(2)))
 
 
 class Estimate(NamedTuple):
@@ -205,13 +197,8 @@ class Quest:
         self._chances = grid.chances(stimuli).reshape(len(self.stimuli), -1)
         self._about = None
         if about:
-            place = list(grid.axes).index(about)
-            along = np.expand_dims(
-                grid.axes[about], [n for n in range(len(grid.axes)) if n != place]
-            )
-            self._about = np.broadcast_to(along, grid.shape).ravel()
-        else:
-            self._entropy = _entropy(self._chances)
+            along = np.meshgrid(*grid.axes.values(), indexing="ij")
+            self._about = along[list(grid.axes).index(about)].ravel()
 
     def log_likelihood(self, history: Sequence[tuple[Stimulus, bool]]) -> Floats:
         """Return the log likelihood of some answers, of the grid's shape."""
@@ -226,7 +213,7 @@ class Quest:
         shares = posterior(self.log_likelihood(history)).ravel()
         positive = self._chances @ shares
         if self._about is None:
-            worth = _entropy(positive) - self._entropy @ shares
+            worth = _entropy(positive) - _entropy(self._chances) @ shares
         else:
             mean = shares @ self._about
             # Of both outcomes: p(o) (E[φ | o] - E[φ])² = (Σ_θ post p(o) φ - p(o) E[φ])² / p(o).

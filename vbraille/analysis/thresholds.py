@@ -188,7 +188,7 @@ def find_preferred(first: ArrayLike, second: ArrayLike, chose_first: ArrayLike) 
         "noise": np.geomspace(0.02, 0.4, 12) * (high - low),
         "lapse": (0.03,),
     }
-    grid = Grid(nearer(), axes)
+    grid = Grid(nearer, axes)
     found = grid.log_likelihood(pairs, chosen, np.bincount(index.ravel()))
     estimate = grid.estimate("liked", found)
     best = int(np.argmax(np.exp(found - found.max()).sum(axis=(1, 2))))

@@ -14,7 +14,7 @@ from vbraille.errors import InputError
 from vbraille.knobs import KNOBS, profile_values
 from vbraille.layout import Layout, cells_per_line
 from vbraille.render import MAPPINGS, single_row
-from vbraille.translate import Book, choose_table, has_tables, open_source, remarks
+from vbraille.translate import Book, choose_table, open_source, remarks, table_of
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def table_options(ctx: click.Context, own: str = "") -> tuple[str | None, int | 
         chosen |= {name: None for name in ("language", "grade") if name not in asked}
     elif "language" in asked or "grade" in asked:
         chosen["table"] = None
-    if not asked & {"language", "table"} and own and has_tables(own):
+    if not asked & {"language", "table"} and own and table_of(own):
         chosen |= {"language": own, "table": None}
     return chosen["language"], chosen["grade"], chosen["table"]
 
@@ -212,7 +212,7 @@ class Page:
     def progress(self, line: Line) -> float:
         """Share of the lines that is done with the last of `lines`, 0 to 1."""
         if self.last is None:
-            return self.layout.progress(line)
+            return self.layout.book.source.progress(line.place)
         return self._given / (self.last - self.first + 1)
 
     def remarks(self) -> Iterator[str]:

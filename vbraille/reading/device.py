@@ -11,7 +11,7 @@ from vbraille.devices.events import HandDone, HandHeld, NotInTime, told
 from vbraille.devices.registry import find_driver
 from vbraille.display import Pose
 from vbraille.engine.engine import placing_of
-from vbraille.engine.host import Host, HostDiedError
+from vbraille.engine.host import Host
 from vbraille.errors import DeviceError
 from vbraille.simulation.specs import is_simulated
 
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 HAND = "sweep:60"
 POLL_S = 0.02
 _STALE_NS = 30_000_000  # a hand that is done sooner was done with the order before
-
-__all__ = ["HAND", "POLL_S", "HostDiedError", "ReadingDevice"]
 
 
 class ReadingDevice:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.devices.base import Placing
 from vbraille.devices.events import Button, Knob, placing_sentence
+from vbraille.engine.host import HostDiedError
 from vbraille.errors import DeviceError, InputError
 from vbraille.reading.commands import Command, bindings, spoken
-from vbraille.reading.device import POLL_S, HostDiedError
+from vbraille.reading.device import POLL_S
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

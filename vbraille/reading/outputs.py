@@ -167,10 +167,6 @@ class Speech(Output):
         """Stop what is being spoken, for something newer."""
         self._client.cancel()
 
-    def show(self, what: Any) -> None:
-        """Speak the text of a line."""
-        self.say(what.text)
-
     def close(self) -> None:
         """End, once all is spoken."""
         self._client.close()
@@ -223,8 +219,7 @@ class Behind(Output):
 
     def show(self, what: Any) -> None:
         """Have the text under the hand said, as it is now."""
-        text = what.text
-        self._waiting.put(lambda output: output.say(text))
+        self.say(what.text)
 
     def sound(self, path: Path) -> None:
         """Have a file of sound played."""

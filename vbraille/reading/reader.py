@@ -68,7 +68,7 @@ class Reader(Surface):
     Attributes
     ----------
     first, last : int
-        Places at which the first line to read begins and the last one ends.
+        Places at which the first line to read begins, and the last one.
     back : list[int]
         Places before jumps.
     undo : list[BrailleStyle]
@@ -105,14 +105,15 @@ class Reader(Surface):
         self.kept, self.figures, self.save, self.attended = kept, figures, save, attended
         self._cells, self._echo, self._changed = cells, echo, changed
         self.layout = Layout(book, cells or self.width)
-        first, last = (number and self.layout.line(number) for number in lines)
+        first = self.layout.line(lines[0])
+        last = None if lines[1] is None else self.layout.line(lines[1])
         if first is None:
             count = self.layout.count()
             raise InputError(
                 f"{book.source.name} has {count} lines; line {lines[0]} is past the end"
             )
         self._start, self.first = first, first.place
-        self.last = sys.maxsize if last is None else _last_place(last)
+        self.last = sys.maxsize if last is None else last.place
         self.back: list[int] = []
         self.undo: list[BrailleStyle] = []
         self.pattern: re.Pattern[str] | None = None  # what is searched for
@@ -196,7 +197,8 @@ class Reader(Surface):
 
     def has(self, line: Line) -> bool:
         """Tell whether a line is among those that are read."""
-        return line.place <= self.last and _last_place(line) >= self.first
+        end = max(line.place, line.end - 1)  # the place of a blank line is its only one
+        return line.place <= self.last and end >= self.first
 
     def beside(self, step: int) -> Line | None:
         """Line after the one under the hand, or before it where the step is -1."""
@@ -377,7 +379,7 @@ class Reader(Surface):
         """Keep the place now."""
         line, self._unkept = self._unkept, None
         if line is not None:
-            self.kept.keep(line.place, self.layout.progress(line), around(line))
+            self.kept.keep(line.place, self.book.source.progress(line.place), around(line))
 
     def come_back(self) -> None:
         """Put the text under the hand again, after a figure was felt in its place."""
@@ -456,11 +458,6 @@ class Reader(Surface):
         self.back = []
         before.close()
         self.say(f"the file has changed; read again, {self.named}")
-
-
-def _last_place(line: Line) -> int:
-    """Place of the last character of a line; of one that is blank, the place of the line."""
-    return max(line.place, line.end - 1)
 
 
 def letter_said(text: str) -> str:

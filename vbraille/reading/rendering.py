@@ -211,11 +211,10 @@ def _write(
 ) -> None:
     """Write the frames of a program on a way over it, whose parts are some rows of the page."""
     for start in range(0, way.t_s.size, _BLOCK_FRAMES):
-        span = slice(start, start + _BLOCK_FRAMES)
-        t_s, x_mm, y_mm, theta_rad = (
-            each[span] for each in (way.t_s, way.x_mm, way.y_mm, way.theta_rad)
+        x_mm, y_mm, theta_rad, t_s, velocity = (
+            each[start : start + _BLOCK_FRAMES]
+            for each in (way.x_mm, way.y_mm, way.theta_rad, way.t_s, way.velocity_mm_s)
         )
-        velocity = way.velocity_mm_s[span]
         going_on = start > 0
         part, frames = program.poses(x_mm, y_mm, theta_rad, t_s, velocity, going_on=going_on)
         line = row + part.clip(0, rows - 1)

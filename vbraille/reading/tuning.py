@@ -8,7 +8,7 @@ the next choices. All follows from the list of choices.
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from vbraille.knobs import KNOBS
 from vbraille.reading.commands import Where, both_ways, command
@@ -76,14 +76,19 @@ class Course:
                 return
             # An end that every choice led to is liked best.
             liked = low if low == least else high if high == most else (low + high) / 2
-            self.style = self.style.replace(**{knob.field: knob.nearest(liked)})
+            self.style = _with(self.style, knob, knob.nearest(liked))
             self.found.append(knob.said(knob.nearest(liked)))
 
     def shown(self, which: int) -> BrailleStyle:
         """Style of the one or the other of the next choice, 1 or 2."""
         if self.knob is None:
             return self.style
-        return self.style.replace(**{self.knob.field: self.pair[which - 1]})
+        return _with(self.style, self.knob, self.pair[which - 1])
+
+
+def _with(style: BrailleStyle, knob: Knob, value: Any) -> BrailleStyle:
+    """Style with a value of a knob."""
+    return style.replace(**{knob.field: value})
 
 
 class Tuning(Explored):

@@ -106,8 +106,6 @@ class Session:
         )
         head = {
             "protocol": loaded.name,
-            "participant": participant,
-            "seed": plan.seed,
             "order": plan.order,
             "group": plan.group,
             "session": plan.session,

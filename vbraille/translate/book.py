@@ -10,10 +10,9 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from vbraille.braille.cells import Cells
-from vbraille.errors import InputError
 from vbraille.translate.blocks import MarkKind, cut_marks
 from vbraille.translate.spellings import Kind, Undefined
-from vbraille.translate.tables import BrailleTable, find_table
+from vbraille.translate.tables import BrailleTable, table_of
 from vbraille.translate.undefined import Written
 from vbraille.wording import count, setting
 
@@ -24,12 +23,7 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 _REMEMBERED = 64  # blocks
-# Unified English Braille's indicators for code switching (Rules of UEB, 14.3): of a word and of its
-# end, and of a passage, whose opening has the language's letters between its cells.
-_UEB_WORD, _UEB_WORD_END, _UEB_OPENING, _UEB_OPENED, _UEB_CLOSING = (
-    Cells.from_unicode(sign).masks.tobytes() for sign in ("⠘⠷", "⠘⠾", "⠐⠷", "⠄", "⠠⠐⠾")
-)
-_UEB_WORDS = 2  # at most, each with its own
+_UEB_WORDS = 2  # at most, each with its own sign
 
 
 class Book:
@@ -55,6 +49,8 @@ class Book:
 
     Attributes
     ----------
+    cells : function
+        Gives the cells of a block of the source; they know the places that they stand for.
     otherwise : dict
         For each block that was translated, what was written otherwise than it stands.
     """
@@ -71,12 +67,8 @@ class Book:
         self.source, self.table = source, table
         self.language, self.grade, self.switch = language, grade, switch
         self.otherwise: dict[int, Counter[tuple[Kind, str]]] = {}
-        self._cells = lru_cache(_REMEMBERED)(self._translate)
+        self.cells = lru_cache(_REMEMBERED)(self._translate)
         self._table_for = cache(self._find_table)
-
-    def cells(self, block: Block) -> Cells:
-        """Cells of a block of the source; they know the places that they stand for."""
-        return self._cells(block)
 
     def _translate(self, block: Block) -> Cells:
         if block.cells is not None:
@@ -104,17 +96,13 @@ class Book:
 
     def _find_table(self, language: str) -> BrailleTable:
         """Table of a passage's language; the book's own if that is its language, or it has none."""
-        own = self.table
+        own, found = self.table, None
         assert own is not None
-        tags = [tag for tag in (self.language, self.source.language) if tag]
-        tags = tags or [own.info.language or own.name.partition("-")[0]]
-        usual = _table_of(language)
-        ours = [table.name for table in (own, *map(_table_of, tags)) if table]
-        if usual is None or not self.switch or usual.name in ours:
+        tags = (self.language, self.source.language, own.info.language or own.name)
+        if self.switch and _primary(language) not in ("", *map(_primary, tags)):
+            found = table_of(language, self.grade) or table_of(language)
+        if found is None or found.name == own.name or found.eight_dots > own.eight_dots:
             return own
-        found = _table_of(language, self.grade) or usual
-        if found.eight_dots and not own.eight_dots:
-            found = own if usual.eight_dots else usual
         found.undefined = own.undefined
         return found
 
@@ -136,22 +124,24 @@ def _between_signs(own: BrailleTable, part: Written, tag: str, following: str) -
     if not words:
         return part
     first, end = words[0][0], words[-1][1]
-    language = re.split("[-_]", tag.strip().lower())[0]
+    language = _primary(tag)
     if not own.is_ueb:
         opening, closing = next(filter(own.cells_of, ("[]", "()")), "⠿⠿")
-        before, after = own.write(f"{opening}{language}:"), own.write(closing)
-        signs = [(first, before.masks), (end, after.masks)]
+        signs = [(first, f"{opening}{language}:"), (end, closing)]
+    # Unified English Braille's indicators for code switching (Rules of UEB, 14.3): of a passage,
+    # whose opening has the language's letters between its cells; of a word and of its end.
     elif len(words) > _UEB_WORDS:
-        letters = Cells.from_brf(language).masks.tobytes()
-        signs = [(first, _UEB_OPENING + letters + _UEB_OPENED), (end, _UEB_CLOSING)]
+        letters = Cells.from_brf(language).to_unicode()
+        signs = [(first, f"⠐⠷{letters}⠄"), (end, "⠠⠐⠾")]
     else:
-        signs = [(start, _UEB_WORD) for start, _ in words]
+        signs = [(start, "⠘⠷") for start, _ in words]
         if following.strip() and part.masks[-1]:
-            signs.append((end, _UEB_WORD_END))
+            signs.append((end, "⠘⠾"))
     for cell, sign in reversed(signs):
-        part.masks = part.masks[:cell] + sign + part.masks[cell:]
+        masks = own.write(sign).masks
+        part.masks = part.masks[:cell] + masks + part.masks[cell:]
         place = part.places[min(cell, len(part.places) - 1)]
-        part.places[cell:cell] = [place] * len(sign)
+        part.places[cell:cell] = [place] * len(masks)
     return part
 
 
@@ -168,8 +158,7 @@ def remarks(book: Book, blocks: Iterable[Block]) -> list[str]:
     unshown: Counter[str] = Counter()
     written: dict[Kind, Counter[str]] = {kind: Counter() for kind in Kind}
     for block in blocks:
-        things = [mark.target for mark in block.marks if mark.kind is MarkKind.UNSHOWN]
-        unshown.update(thing or "other thing" for thing in things)
+        unshown.update(mark.target for mark in block.marks if mark.kind is MarkKind.UNSHOWN)
         for (kind, part), number in book.otherwise.get(block.number, {}).items():
             written[kind][part] += number
     table, said = book.table, []
@@ -210,8 +199,6 @@ def _characters(found: Counter[str]) -> str:
     return f"{count(found.total(), 'character')} ({', '.join(named)})"
 
 
-def _table_of(language: str, grade: int | None = None) -> BrailleTable | None:
-    try:
-        return BrailleTable(find_table(language, grade))
-    except InputError:
-        return None
+def _primary(tag: str) -> str:
+    """Language of a tag, without its region."""
+    return re.split("[-_]", tag.strip().lower())[0]

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, BinaryIO
 
-from vbraille.translate.numbering import BULLET, whole
+from vbraille.translate.numbering import BULLET, Level, Numbering, whole
 from vbraille.translate.office import (
     Document,
-    Level,
     Look,
-    Numbering,
     font_of,
     heading,
     put_picture,
@@ -33,15 +31,15 @@ _LINK = re.compile(
 )
 
 
-def read_docx(source: Source) -> Iterator[Block]:
-    """Read a DOCX file.
+def read_docx(source: Source, stream: BinaryIO | None = None) -> Iterator[Block]:
+    """Read a DOCX file, or a stream of one that a source was made into.
 
     Raises
     ------
     InputError
         If a part that is needed is missing, damaged or too large.
     """
-    return _Docx(source).blocks_of(source)
+    return _Docx(source, stream).blocks_of(source)
 
 
 class _Docx(Document):

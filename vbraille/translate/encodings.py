@@ -77,9 +77,8 @@ def decode(content: bytes, encoding: str | None = None) -> tuple[str, str]:
     text = content.decode("utf-8", "replace")
     if text.count("\ufffd") * 50 < len(text) - sum(map(str.isascii, text)):
         return text, f"is UTF-8 with wrong bytes, the first at {wrong}"
-    sample = _TAG.sub(b" ", content)
-    if len(sample) > _SAMPLE:
-        sample = sample[: sample.rfind(b"\n", 0, _SAMPLE) + 1] or sample[:_SAMPLE]
+    sample = _TAG.sub(b" ", content)[:_SAMPLE]
+    sample = sample.rpartition(b"\n")[0] or sample  # characters may have several bytes
     name = "cp1252"
     if sum(byte > 127 for byte in sample) * 3 > len(sample):
         import charset_normalizer

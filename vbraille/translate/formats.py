@@ -35,7 +35,6 @@ _READERS = {
     "unicode-braille": "braillefiles:read_brf encoding",
     "pef": "braillefiles:read_pef",
 }
-_KEEP_LINES = ("brf", "unicode-braille", "pef")  # whatever is asked for
 _SHOWN_BY = tomllib.loads(Path(__file__).with_name("formats.toml").read_text("utf-8"))
 _OLE = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _BEFORE_ROOT = r"(?:\s+|<\?.*?\?>|<!--.*?-->)*"
@@ -88,15 +87,13 @@ def open_source(
         given = {"encoding": encoding, "brf_table": brf_table, "keep_lines": keep_lines or None}
         options: dict[str, Any] = {}
         for option, value in given.items():
-            is_wish = option in wishes or (option == "keep_lines" and found in _KEEP_LINES)
-            if value is None or (is_wish and (option not in takes or found == "brf")):
-                continue
-            if option not in takes:
+            if option in takes and value is not None:
+                options[option] = value
+            elif value is not None and option not in wishes:
                 raise InputError(
                     f"{name} is read as {found}, for which there is no "
                     f"{setting(option.replace('_', '-'))}; leave it out"
                 )
-            options[option] = value
         stream.seek(0)
         module, _, function = reader.partition(":")
         read = getattr(import_module(f"vbraille.translate.{module}"), function)

@@ -27,19 +27,12 @@ class _Cell(NamedTuple):
     blocks: list[Block]
     whole: Block
 
-    @property
-    def is_header(self) -> bool:
-        role = self.element.get("role")
-        return self.element.name == "th" or role in ("columnheader", "rowheader")
-
     def spans(self, what: str) -> int:
         """Number of the columns or rows that it covers, by its attribute."""
         return min(max(whole(self.element.get(what)), 1), _MOST)
 
 
-def table_blocks(
-    table: Element, read: Callable[[Element], list[Block]], *, lays_out: bool
-) -> Iterator[Block]:
+def table_blocks(table: Element, read: Callable[[Element], list[Block]]) -> Iterator[Block]:
     """Rows of a table; or the blocks of its cells, if it only puts them beside each other.
 
     Parameters
@@ -48,12 +41,11 @@ def table_blocks(
         Element of the table.
     read
         Function that reads the blocks of a cell.
-    lays_out
-        Whether the table says that it is none.
     """
     rows = list(_rows(table, read))
     cells = [cell for _, row in rows for cell in row if cell.element.name != "above"]
     kinds = [block.kind for cell in cells for block in cell.blocks]
+    lays_out = bool(table.words & {"presentation", "none"})
     if lays_out or len(cells) <= 1 or any(kind in _LAYING_OUT for kind in kinds):
         for cell in cells:
             yield from cell.blocks
@@ -67,15 +59,15 @@ def table_blocks(
         if all(each is EMPTY for each in wholes):
             continue
         # The cell that heads a row is said with the row, and not above its cells.
-        own = row[0].element.get("id") if row and row[0].is_header else ""
+        own = row[0].element.get("id") if row and row[0].element.name == "th" else ""
         told = []
         for column, cell in enumerate(shown):
             named = cell.element.get("headers").split() if cell else []
             said = " ".join(texts[name] for name in named if name in texts and name != own)
             told.append(said if named else headers.get(column, ""))
         block = joined(wholes, BETWEEN)
-        named = any(cell.is_header for cell in row) and len(row) > 1
-        if is_head or (named and all(cell.is_header or not cell.whole.text for cell in row)):
+        kinds = {cell.element.name for cell in row if cell.whole.text}
+        if is_head or (kinds == {"th"} and len(row) > 1):
             for column, cell in enumerate(line):
                 text = cell.whole.text if cell else ""
                 headers[column] = f"{headers.get(column, '')} {text}".strip()

@@ -12,7 +12,7 @@ from vbraille.translate.blocks import Block, BlockKind, Mark, MarkKind, cut_mark
 from vbraille.translate.encodings import tidy
 from vbraille.translate.formulas import formula_text
 from vbraille.translate.grids import EMPHASES, joined, table_blocks
-from vbraille.translate.numbering import BULLET, list_markers, whole
+from vbraille.translate.numbering import BULLET, Numbering, html_list, whole
 from vbraille.translate.spellings import LOWERED, RAISED, small
 from vbraille.translate.trees import Element, inside, names, read_tree
 
@@ -64,7 +64,7 @@ class _Role(NamedTuple):
     notes: bool = False  # items of lists are notes here
     refers: bool = False  # a link is a reference to a note
     lines: bool = False  # white space is kept
-    marker: Callable[[Element], str] = lambda _: BULLET  # what stands before an item
+    numbering: Numbering = Numbering()
 
 
 class Walker:
@@ -227,12 +227,12 @@ class Walker:
         elif lists_notes:
             self._become(notes=True)
         start, known = self._next, len(self._marks)
-        self._read(element, words)
+        self._read(element)
         if len(self._text) > start:
             if tag and not is_block and not _same(tag, self._role.language or self._language):
                 self._marks.append(Mark(MarkKind.LANGUAGE, start, len(self._text), tag))
             refers = any(mark.kind is MarkKind.NOTE for mark in self._marks[known:])
-            for kind in _emphases(element, words):
+            for kind in _emphases(element):
                 if kind in _SMALL and refers:
                     continue
                 if kind in _SMALL:
@@ -244,9 +244,9 @@ class Walker:
         if before.kind is BlockKind.ITEM and role.kind is BlockKind.PARAGRAPH:
             self._become(BlockKind.PARAGRAPH)  # the item's first block is written
 
-    def _read(self, element: Element, words: set[str]) -> None:
+    def _read(self, element: Element) -> None:
         """Read an element by its name."""
-        role, kind = self._role, element.get("type").lower()
+        role, words, kind = self._role, element.words, element.get("type").lower()
         match element.name:
             case "br":
                 self._blank = False
@@ -282,22 +282,22 @@ class Walker:
                 self._become(BlockKind.HEADING, max(role.sections, 1))
             case "ul" | "ol" | "list" | "menu" | "dl":
                 group = role.group if role.items else next(self._groups)
-                marker = list_markers(element)
-                self._become(items=role.items + 1, group=group, marker=marker)
+                numbering = html_list(element)
+                self._become(items=role.items + 1, group=group, numbering=numbering)
             case "li":
                 self._item(element)
                 return
             case "dt" | "dd":
                 self._become(BlockKind.ITEM, max(role.items, 1) + (element.name == "dd"))
             case "a" | "noteref" | "annoref":
-                self._link(element, words)
+                self._link(element)
                 return
             case "input" if kind == "checkbox" and "disabled" in element.attributes:
                 self._say("☒ " if "checked" in element.attributes else "☐ ")
             case "input" if kind not in ("image", "hidden"):
                 self._unshown("form field", _label(element) or element.get("value"))
             case "img" | "input" if kind != "hidden":
-                self._img(element, words)
+                self._img(element)
             case "svg":
                 self._svg(element)
                 return
@@ -305,7 +305,7 @@ class Walker:
                 self._math(element)
                 return
             case "table":
-                self._table(element, words)
+                self._table(element)
                 return
             case name if name in _NAMES["unshown"]:
                 self._unshown(_NAMES["unshown"][name], _label(element))
@@ -329,7 +329,8 @@ class Walker:
         self._add(after)
 
     def _item(self, element: Element) -> None:
-        lead = element.get("data-marker", self._role.marker(element))
+        marker = self._role.numbering.marker(said=element.get("value"))
+        lead = element.get("data-marker", marker)
         self._lead = self._lead + lead if self._lead not in ("", BULLET) else lead
         if self._role.notes or self._role.kind is BlockKind.NOTE:
             self._become(BlockKind.NOTE, notes=False)
@@ -340,9 +341,11 @@ class Walker:
         self._end()
         self._lead = ""
 
-    def _link(self, element: Element, words: set[str]) -> None:
+    def _link(self, element: Element) -> None:
         address = element.get("href") or "#" + element.get("idref").lstrip("#")
-        refers = self._role.refers or bool(words & _NAMES["references"]) or element.name != "a"
+        refers = (
+            self._role.refers or bool(element.words & _NAMES["references"]) or element.name != "a"
+        )
         refers = refers or _WORD_NOTE.match(address) is not None
         start, known = self._next, len(self._marks)
         self._inside(element)
@@ -372,7 +375,7 @@ class Walker:
     def _anchor(self, name: str) -> str:
         return f"{self._member}#{name}" if self._member else name
 
-    def _img(self, element: Element, words: set[str]) -> None:
+    def _img(self, element: Element) -> None:
         path = re.split("[?#]", element.get("src"))[0].strip()
         said = _label(element)
         decoration = "alt" in element.attributes and not said
@@ -384,7 +387,7 @@ class Walker:
             self._end()
         elif said:
             self._add_apart(said, MarkKind.IMAGE)
-        elif not decoration and not words & {"presentation", "none"}:
+        elif not decoration and not element.words & {"presentation", "none"}:
             self._unshown("picture")
 
     def _svg(self, element: Element) -> None:
@@ -406,13 +409,12 @@ class Walker:
             self._blank = self._blank or "".join(self._text[-1:]).isalnum()
         self._add(text)
 
-    def _table(self, element: Element, words: set[str]) -> None:
+    def _table(self, element: Element) -> None:
         group = next(self._groups)
         for caption in element.elements:
             if caption.name == "caption":
                 self._walk(caption)
-        lays_out = bool(words & {"presentation", "none"})
-        for block in table_blocks(element, self._cell, lays_out=lays_out):
+        for block in table_blocks(element, self._cell):
             if block.kind is BlockKind.ROW:
                 block = block.replace(group=group, language=self._role.language)
             self._put(block)
@@ -433,11 +435,11 @@ class Walker:
             self._put(page)
 
 
-def _emphases(element: Element, words: set[str]) -> list[MarkKind]:
+def _emphases(element: Element) -> list[MarkKind]:
     """Kinds of emphasis that an element gives its text."""
     named = [element.name]
     if element.name == "span":
-        named += [word for word in words if word.startswith(("sub", "sup"))]
+        named += [word for word in element.words if word.startswith(("sub", "sup"))]
     style = element.get("style").lower().replace(" ", "")
     named += [css for css in _EMPHASES if style and ":" in css and css in style]
     return [_EMPHASES[name] for name in named if name in _EMPHASES]

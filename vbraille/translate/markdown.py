@@ -33,7 +33,6 @@ def read_markdown(source: Source, encoding: str | None = None) -> Iterator[Block
         If the encoding is unknown, or there is no text.
     """
     from markdown_it import MarkdownIt
-    from markdown_it.renderer import RendererHTML
     from mdit_py_plugins.anchors import anchors_plugin
     from mdit_py_plugins.attrs import attrs_plugin
     from mdit_py_plugins.deflist import deflist_plugin
@@ -46,11 +45,11 @@ def read_markdown(source: Source, encoding: str | None = None) -> Iterator[Block
     text = read_text_of(source, encoding)
     parser = MarkdownIt("commonmark", {"maxNesting": len(text)}).enable(["table", "strikethrough"])
     parser.core.ruler.before("inline", "leave_long", _leave_long)
-    for plugin in (front_matter_plugin, footnote_plugin, deflist_plugin):
+    for plugin in (front_matter_plugin, footnote_plugin, deflist_plugin, sub_plugin):
         parser.use(plugin)
     # As pandoc has it: "$5 and $6" is no formula, nor is "$20,000 or US$15".
     parser.use(dollarmath_plugin, allow_space=False, allow_digits=False)
-    parser.use(sub_plugin).use(superscript_plugin)
+    parser.use(superscript_plugin)
     parser.use(attrs_plugin, spans=True).use(anchors_plugin, max_level=6)
     try:
         tokens = parser.parse(text)
@@ -60,15 +59,12 @@ def read_markdown(source: Source, encoding: str | None = None) -> Iterator[Block
     for token in tokens:
         if token.type == "front_matter":
             _read_front(source, token.content)
-        for image in token.children or ():
-            if image.type == "image" and not image.content.strip():
-                # A picture without words; an `alt` would say that it is a decoration.
-                image.attrs.pop("alt")
-                image.type = "html_inline"
-                image.content = f"<img{RendererHTML.renderAttrs(image)}>"
     html = parser.renderer.render(tokens, parser.options, {})
     content = html.encode("utf-8", "replace")
     root = read_tree(content, source.name, source.note, xml=False)
+    for image in root.iter("img"):  # an empty text is none here, and no sign of a decoration
+        if not image.get("alt").strip():
+            image.attributes.pop("alt", None)
     for heading in root.iter("h1", "h2", "h3", "h4", "h5", "h6"):
         last = heading.children[-1] if heading.children else ""
         found = _NAME.match(last) if isinstance(last, str) else None

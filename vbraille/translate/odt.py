@@ -6,12 +6,10 @@ import posixpath
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.translate.numbering import whole
+from vbraille.translate.numbering import Level, Numbering, whole
 from vbraille.translate.office import (
     Document,
-    Level,
     Look,
-    Numbering,
     font_of,
     heading,
     put_picture,
@@ -151,11 +149,9 @@ class _Odt(Document):
         listed = into.add("ul")
         look = look | {"list": style, "at": str(at + 1)}
         for item in element.elements:
-            if item.get("start-value"):
-                numbering.starts[at] = whole(item.get("start-value"))
             only_lists = all(child.name == "list" for child in item.elements)
             has_marker = item.name == "list-item" and not only_lists
-            marker = numbering.marker(at) if has_marker else ""
+            marker = numbering.marker(at, item.get("start-value")) if has_marker else ""
             self.inner(item, listed.add("li", data_marker=marker), look)
 
 
@@ -186,11 +182,11 @@ def _look_of(style: Element) -> Look:
             if value:
                 is_usual = value == usual or (value.isdigit() and int(value) < 600)
                 look[tag] = "" if is_usual else tag
-        place = properties.get("text-position").split(" ")[0]
-        if place.startswith(("sub", "-")):
-            look["sub"] = "sub"
-        elif place == "super" or place.rstrip("%").strip("0").isdigit():
-            look["sup"] = "sup"
+        place = properties.get("text-position").split(" ")[0].rstrip("%")
+        height = whole({"super": "1", "sub": "-1"}.get(place, place), 0)
+        if height:
+            tag = "sup" if height > 0 else "sub"
+            look[tag] = tag
         if properties.get("display"):
             look["hidden"] = "hidden" if properties.get("display") == "none" else ""
         look |= font_of(properties.get("font-name"))

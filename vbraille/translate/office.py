@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from dataclasses import dataclass, field
 from itertools import takewhile
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from vbraille.translate.archive import Archive
 from vbraille.translate.html import tree_blocks
-from vbraille.translate.numbering import BULLET, numeral
 from vbraille.translate.trees import Element
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from vbraille.translate.blocks import Block
+    from vbraille.translate.numbering import Numbering
     from vbraille.translate.source import Source
 
 # What a style, a paragraph or a run says of its text: "lang"; "font" if that is one of signs;
@@ -34,7 +33,6 @@ _ROLES = re.compile(
     "|(?P<th>table heading.*)"
 )
 _LONGEST_CHAIN = 20  # styles that are based on each other
-_BOXES = frozenset("☐☑☒")  # bullets of lists of what is done
 _PRIVATE = re.compile("[\uf000-\uf0ff]")  # where fonts of signs have theirs
 # Characters of the font Symbol from 0x20 on, and from 0xA0 on; some of Wingdings.
 _SYMBOL = (
@@ -80,68 +78,6 @@ def tag_of(*parts: str) -> Look:
     return {"lang": "-".join(known)} if known else {}
 
 
-class Level(NamedTuple):
-    """A level of a list.
-
-    Parameters
-    ----------
-    form
-        Form of its numbers, as of `numeral`, or "bullet", or "none".
-    text
-        Text around its number, such as "%1.%2)".
-    start
-        Number of its first item.
-    legal
-        Whether the numbers of all levels are plain in it.
-    """
-
-    form: str = "bullet"
-    text: str = "•"
-    start: int = 1
-    legal: bool = False
-
-
-@dataclass(slots=True)
-class Numbering:
-    """Counts the items of a list.
-
-    Parameters
-    ----------
-    levels
-        Levels of the list.
-    counts
-        Numbers of the last items, by levels; lists that count on from each other share them.
-    starts
-        Numbers with which levels begin anew when they are first come to.
-    """
-
-    levels: dict[int, Level] = field(default_factory=dict)
-    counts: dict[int, int] = field(default_factory=dict)
-    starts: dict[int, int] = field(default_factory=dict)
-
-    def restart(self, at: int) -> None:
-        """Begin a level anew, and those within it."""
-        for level in [level for level in self.counts if level >= at]:
-            del self.counts[level]
-
-    def marker(self, at: int) -> str:
-        """Count an item of a level, and give what stands before it."""
-        level = self.levels.get(at, Level())
-        number = self.starts.pop(at, self.counts.get(at, level.start - 1) + 1)
-        self.restart(at)
-        self.counts[at] = number
-        if level.form == "bullet" and level.text.strip():
-            return f"{level.text} " if level.text in _BOXES else BULLET
-        if level.form in ("bullet", "none"):
-            return ""
-        label = level.text
-        for place in range(9):
-            one = self.levels.get(place, level)
-            shown = numeral(self.counts.get(place, one.start), "1" if level.legal else one.form)
-            label = label.replace(f"%{place + 1}", shown)
-        return f"{label.strip()} " if label.strip() else ""
-
-
 class Document:
     """A document that becomes a tree, with what can be said of it only when all is read.
 
@@ -165,8 +101,8 @@ class Document:
 
     names: dict[str, Any]
 
-    def __init__(self, source: Source) -> None:
-        self.archive = Archive(source.stream, source.name)
+    def __init__(self, source: Source, stream: BinaryIO | None = None) -> None:
+        self.archive = Archive(stream or source.stream, source.name)
         self.body = Element("body")
         self.styles: dict[str, Look] = {}
         self.lists: dict[str, Numbering] = {}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import shutil
 import subprocess
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -31,11 +30,9 @@ def read_rtf(source: Source) -> Iterator[Block]:
         If it is damaged, or LibreOffice cannot read it.
     """
     content = source.stream.read()
-    office = shutil.which("soffice")
-    made = _converted(office, content) if office else b""
+    made = _converted(content)
     if made:
-        source.stream = io.BytesIO(made)
-        return read_docx(source)
+        return read_docx(source, io.BytesIO(made))
     from striprtf.striprtf import rtf_to_text
 
     try:
@@ -44,20 +41,22 @@ def read_rtf(source: Source) -> Iterator[Block]:
         raise InputError(
             f"{source.name} is a damaged RTF file; save it again, or as DOCX"
         ) from None
-    why = "LibreOffice cannot read it" if office else "LibreOffice (soffice) is not installed"
-    source.note(f"{source.name} is read as plain text, without headings and notes, for {why}")
+    source.note(
+        f"{source.name} is read as plain text, without headings and notes, for LibreOffice "
+        f"(soffice) is not installed or cannot read it"
+    )
     # Lone surrogates are halves of what RTF writes in two.
     text = text.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
     return text_blocks(source, text.replace("\n", "\n\n"))
 
 
-def _converted(office: str, content: bytes) -> bytes:
+def _converted(content: bytes) -> bytes:
     """The file as DOCX; nothing if LibreOffice cannot make it."""
     with TemporaryDirectory() as folder:
         book = Path(folder, "book.rtf")
         book.write_bytes(content)
         profile = f"-env:UserInstallation={Path(folder, 'profile').as_uri()}"
-        command = [office, profile, "--headless", "--convert-to", "docx", "--outdir", folder]
+        command = ["soffice", profile, "--headless", "--convert-to", "docx", "--outdir", folder]
         try:
             subprocess.run([*command, str(book)], capture_output=True, timeout=_MOST_S, check=False)
             return book.with_suffix(".docx").read_bytes()

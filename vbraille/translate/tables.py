@@ -111,15 +111,6 @@ def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
     )
 
 
-def has_tables(language: str) -> bool:
-    """Tell whether there is a table for a language, whatever its grade."""
-    try:
-        tables_of(language)
-    except InputError:
-        return False
-    return True
-
-
 def find_table(language: str = "en", grade: int | None = None) -> str:
     """Name of the table for a language and grade.
 
@@ -188,13 +179,13 @@ class BrailleTable:
         except RuntimeError:
             names = [table.name for table in list_tables()]
             raise InputError(
-                f"unknown braille table {name[:_LONGEST_NAME]!r}"
-                f"{nearest(name[:_LONGEST_NAME], names, 3)} (vbraille tables lists all)"
+                f"unknown braille table {name!r}{nearest(name, names, 3)} "
+                f"(vbraille tables lists all)"
             ) from None
 
-    def translate(self, text: str, marks: Sequence[Mark] = ()) -> Cells:
-        """Cells of a paragraph, with the emphasis of its parts; the first stands for place 0."""
-        return self.write(text, marks).cells(len(text))
+    def translate(self, text: str) -> Cells:
+        """Cells of a paragraph; the first stands for place 0."""
+        return self.write(text).cells(len(text))
 
     def write(self, text: str, marks: Sequence[Mark] = ()) -> Written:
         """Dots of a text, with what was written otherwise than it stands."""
@@ -307,11 +298,10 @@ def choose_table(
     return BrailleTable(table, Undefined(undefined))
 
 
-def six_dot_table(language: str) -> str | None:
-    """Name of the usual table of a language, if it has six dots; otherwise None."""
+def table_of(language: str, grade: int | None = None) -> BrailleTable | None:
+    """Table of a language and a grade; None if there is none."""
     try:
-        name = find_table(language)
-        return None if BrailleTable(name).eight_dots else name
+        return BrailleTable(find_table(language, grade))
     except InputError:
         return None
 

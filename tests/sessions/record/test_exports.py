@@ -16,7 +16,7 @@ from vbraille.sessions.record.bids import export_bids
 from vbraille.sessions.record.record import read
 from vbraille.sessions.record.replay import Replay
 from vbraille.sessions.record.trials import best_level, codebook, protocol_of, rows, to_csv
-from vbraille.sessions.record.withdraw import withdrawal
+from vbraille.sessions.record.withdraw import Withdrawal
 from vbraille.sessions.running.device import SessionDevice
 
 ASKED = """
@@ -133,7 +133,7 @@ def test_all_of_a_person_is_found_and_removed(sessions, tmp_path):
     export_bids([mine, other], tmp_path / "set")
     (tmp_path / "trials.csv").write_text(to_csv(rows(mine) + rows(other)), "utf-8")
     (tmp_path / "letter.txt").write_text("Dear P01", "utf-8")
-    found = withdrawal([tmp_path], "P01")
+    found = Withdrawal([tmp_path], "P01")
     assert mine in found.whole
     assert found.rows[tmp_path / "trials.csv"] == 3
     assert found.left == [tmp_path / "letter.txt"]
@@ -144,7 +144,7 @@ def test_all_of_a_person_is_found_and_removed(sessions, tmp_path):
     assert {row["participant"] for row in kept} == {"P02"}
     assert not (tmp_path / "set" / "sub-P01").exists()
     assert "P01" not in (tmp_path / "set" / "participants.tsv").read_text()
-    assert withdrawal([tmp_path], "P01").lines == []
+    assert Withdrawal([tmp_path], "P01").lines == []
 
 
 def test_the_best_texture_of_a_session_is_known(tmp_path):

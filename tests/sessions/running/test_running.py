@@ -175,7 +175,8 @@ def test_exposure_is_limited_from_the_first_touch_and_late_answers_are_marked(tm
     ended, contact = sat.of("ended")[0], sat.of("contact")[0]
     assert ended.data["by"] == "exposure"
     assert ended.t_s - contact.t_s >= 0.5
-    assert [event.data.get("late", False) for event in sat.of("answer")] == [False, True]
+    assert [event.trial for event in sat.of("late")] == [2]
+    assert [row["late"] for row in sat.session.trials] == [0, 1, 0]
     assert sat.session.trials[0]["ended_by"] == "exposure"
 
 

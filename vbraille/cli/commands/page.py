@@ -69,6 +69,7 @@ def command(ctx: click.Context, **chosen: Any) -> None:
 
 def _laid(page: Page, form: str) -> Iterable[bytes]:
     """Write lines as they are laid out for a display or for a number of cells."""
+    from vbraille.braille.cells import Cells
     from vbraille.layout.writing import pef
     from vbraille.wording import printable
 
@@ -79,7 +80,7 @@ def _laid(page: Page, form: str) -> Iterable[bytes]:
         yield from pef(pages, _head(book, width, _LINES), width, _LINES, rowgap=_rowgap(book))
         return
     for line in page.lines():
-        cells = line.printed
+        cells = Cells.bare(line.masks)
         if form == "text":
             text = printable(line.text)
         elif form == "brf":
@@ -124,12 +125,14 @@ def _rowgap(book: Book) -> int:
 
 def _eight_dots(book: Book) -> str:
     """Sentence on a table of eight dots where only six can be written."""
-    from vbraille.translate import six_dot_table
+    from vbraille.translate import table_of
 
     table = book.table
     assert table is not None
-    other = None if table.info is None else six_dot_table(table.info.language)
-    instead = f"give --table {other}, which has six, or" if other else "give"
+    other = table_of(table.info.language)
+    instead = "give"
+    if other is not None and not other.eight_dots:
+        instead = f"give --table {other.name}, which has six, or"
     return (
         f"the table {table.name} has eight dots and BRF has six; "
         f"{instead} --format unicode, which writes all eight"

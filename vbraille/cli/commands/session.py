@@ -245,13 +245,9 @@ def methods(paths: tuple[str, ...]) -> None:
 )
 def withdraw(participant: str, paths: tuple[str, ...], yes: bool) -> int:
     """Remove all data of a participant from folders."""
-    from vbraille.sessions.record.withdraw import withdrawal
+    from vbraille.sessions.record.withdraw import Withdrawal
 
-    folders = [Path(path) for path in paths or (".",)]
-    for folder in folders:
-        if not folder.is_dir():
-            raise InputError(f"there is no folder {folder}")
-    found = withdrawal(folders, participant)
+    found = Withdrawal([Path(path) for path in paths or (".",)], participant)
     left = [f"left: {path} names {participant}; look at it yourself" for path in found.left]
     if not found.lines:
         for line in left:

@@ -380,7 +380,7 @@ class Element:
     above
         The element that it is in; None for the root.
     tag
-        Its name.
+        The element's name.
     tables
         Names by which the table tells what is in it; none if its text is all that counts.
     """

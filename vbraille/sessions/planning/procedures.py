@@ -180,8 +180,6 @@ class QuestPlus(Procedure, frozen=True, kw_only=True, tag="quest"):
         From one value to the next; None for those of the design alone.
     furthest
         Largest difference of two values of which one is preferred.
-    scale
-        Scale on which their distances are judged.
     shape
         Shape of the psychometric function.
     spread, guess, lapse
@@ -195,7 +193,6 @@ class QuestPlus(Procedure, frozen=True, kw_only=True, tag="quest"):
 
     step: Positive | None = None
     furthest: Positive | None = None
-    scale: Literal["linear", "log"] = "linear"
     shape: Literal["normal", "logistic", "weibull"] = "normal"
     spread: Annotated[tuple[Positive, ...], Meta(min_length=1)]
     guess: Chances | None = None
@@ -237,8 +234,7 @@ def quest_of(table: QuestPlus, design: AnyDesign) -> Quest:
         elif not isinstance(design, Compared):
             raise ValueError("is missing; give the step from value to value")
         if isinstance(design, Compared) and design.reference is None:
-            observer = nearer(log=table.scale == "log")
-            grid = Grid(observer, {CENTRE: values, "spread": table.spread, "lapse": table.lapse})
+            grid = Grid(nearer, {CENTRE: values, "spread": table.spread, "lapse": table.lapse})
             furthest = (table.furthest or values[-1]) + 1e-9
             pairs = [(a, b) for a in values for b in values if a < b <= a + furthest]
             return Quest(grid, pairs, CENTRE)

@@ -187,7 +187,7 @@ class _Table:
             "faults": "; ".join(event.data["what"] for event in tried.of("fault")),
             "notes": "; ".join(e.data["text"] for e in tried.events if e.kind == "note"),
             "early": int(data.get("early", False)),
-            "late": int(data.get("late", tried.decided == "missed")),
+            "late": int(bool(tried.of("late", "missed"))),
             "analysed": int(answer is not None and (not trial.catch or asks.counts_catch)),
         }
         for cue in tried.of("cue")[:1]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 import shutil
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from vbraille.csvfiles import read_csv
@@ -26,26 +25,41 @@ REPORT = "report.html"
 MOST_BYTES = 200_000_000  # of a file that is looked through
 
 
-@dataclass
 class Withdrawal:
-    """Data of a person.
+    """Data of a person below some directories.
 
     Parameters
     ----------
-    participant
-        Pseudonym of the person.
-    whole
+    folders, participant
+        The directories, and the pseudonym of the person.
+
+    Attributes
+    ----------
+    whole : dict
         Directories and files that are removed, each with words for what it is.
-    rows
+    rows : dict
         Tables that lose rows, and how many.
-    left
+    left : list
         Files that name the person and stay.
+
+    Raises
+    ------
+    InputError
+        If a directory is missing.
     """
 
-    participant: str
-    whole: dict[Path, str] = field(default_factory=dict)
-    rows: dict[Path, int] = field(default_factory=dict)
-    left: list[Path] = field(default_factory=list)
+    def __init__(self, folders: Iterable[Path], participant: str) -> None:
+        self.participant = participant
+        self.whole: dict[Path, str] = {}
+        self.rows: dict[Path, int] = {}
+        self.left: list[Path] = []
+        word = re.compile(rf"(?<![A-Za-z0-9_-]){re.escape(participant)}(?![A-Za-z0-9_])")
+        for folder in folders:
+            if not folder.is_dir():
+                raise InputError(f"there is no directory {folder}; give one that sessions are in")
+            for path in sorted(folder.rglob("*")):
+                if path.is_file() and not any(parent in self.whole for parent in path.parents):
+                    self._look_at(path, word)
 
     @property
     def lines(self) -> list[str]:
@@ -78,44 +92,24 @@ class Withdrawal:
             said = f"{error.filename} could not be removed: {error.strerror}"
             raise VbrailleError(f"{said}; mend that, and withdraw again") from None
 
-
-def withdrawal(folders: Iterable[Path], participant: str) -> Withdrawal:
-    """Find what there is of a person below some directories.
-
-    Raises
-    ------
-    InputError
-        If a directory is missing.
-    """
-    found = Withdrawal(participant)
-    word = re.compile(rf"(?<![A-Za-z0-9_-]){re.escape(participant)}(?![A-Za-z0-9_])")
-    for folder in folders:
-        if not folder.is_dir():
-            raise InputError(f"there is no directory {folder}; give one that sessions are in")
-        for path in sorted(folder.rglob("*")):
-            if path.is_file() and not any(parent in found.whole for parent in path.parents):
-                _look_at(path, found, word)
-    return found
-
-
-def _look_at(path: Path, found: Withdrawal, word: re.Pattern[str]) -> None:
-    """Note what a file has of the person."""
-    if path.suffix == ".session" and participant_of(path) == found.participant:
-        found.whole[path] = "a session"
-    if path.suffix not in TEXTS or path.stat().st_size > MOST_BYTES:
-        return
-    if not word.search(path.read_text("utf-8", "replace")):
-        return
-    report = next((folder for folder in path.parents if (folder / REPORT).exists()), None)
-    if report is not None:
-        found.whole[report] = "a report, which can be made again without the person"
-    elif path.suffix in TABLES and (count := _without(path, found.participant)[0]):
-        found.rows[path] = count
-        if path.name == PEOPLE:
-            home = path.parent / f"sub-{label_of(found.participant)}"
-            found.whole[home] = "a person of a dataset"
-    else:
-        found.left.append(path)
+    def _look_at(self, path: Path, word: re.Pattern[str]) -> None:
+        """Note what a file has of the person."""
+        if path.suffix == ".session" and participant_of(path) == self.participant:
+            self.whole[path] = "a session"
+        if path.suffix not in TEXTS or path.stat().st_size > MOST_BYTES:
+            return
+        if not word.search(path.read_text("utf-8", "replace")):
+            return
+        report = next((folder for folder in path.parents if (folder / REPORT).exists()), None)
+        if report is not None:
+            self.whole[report] = "a report, which can be made again without the person"
+        elif path.suffix in TABLES and (count := _without(path, self.participant)[0]):
+            self.rows[path] = count
+            if path.name == PEOPLE:
+                home = path.parent / f"sub-{label_of(self.participant)}"
+                self.whole[home] = "a person of a dataset"
+        else:
+            self.left.append(path)
 
 
 def _without(path: Path, participant: str) -> tuple[int, bytes]:

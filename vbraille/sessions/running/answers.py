@@ -23,7 +23,7 @@ class Asked(NamedTuple):
     Parameters
     ----------
     what
-        The answer of a trial, how sure it is, a reply to the questionnaire, or whether to go on
+        The answer of a trial, how sure it is, a reply to the questionnaire, or Enter alone, such as
         after a break.
     trial, attempt
         The trial, and how often it was shown.
@@ -33,7 +33,7 @@ class Asked(NamedTuple):
         What is asked of the questionnaire.
     """
 
-    what: Literal["answer", "confidence", "reply", "go"]
+    what: Literal["answer", "rating", "reply", "Enter"]
     trial: Trial | None = None
     attempt: int = 0
     felt: Callable[[], list[FeltFrames]] = list
@@ -80,7 +80,7 @@ class Answers:
         if asked is None:
             time.sleep(wait_s)
             return None
-        return Line("") if asked.what == "go" else self.give(asked)
+        return Line("") if asked.what == "Enter" else self.give(asked)
 
     def give(self, asked: Asked) -> Line:
         """Return the line for what is asked."""

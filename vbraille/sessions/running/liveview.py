@@ -29,12 +29,6 @@ from vbraille.simulation import steering
 from vbraille.wording import setting
 
 MOST_SAID = 20
-WAITS_FOR = {
-    "answer": "the answer",
-    "confidence": "how sure the answer is",
-    "reply": "a reply to the questionnaire",
-    "go": "Enter",
-}
 _log = logging.getLogger(__name__)
 
 
@@ -140,7 +134,6 @@ class SessionView:
         minutes, seconds = divmod(int(runner.elapsed_s), 60)
         facts.append(("answered", str(runner.progress.done)))
         facts.append(("time", f"{minutes} min {seconds:02} s"))
-        waits_for = WAITS_FOR[runner.asked.what] if runner.asked else runner.presenter.why
         flags = 0 if newest is None else int(newest["flags"])
         why = next((words for flag, words in WHY.items() if flags & flag), "the device is in use")
         state = ViewState(
@@ -148,7 +141,7 @@ class SessionView:
             array=array_shown(device.display),
             geometry=geometry_shown(style.geometry),
             rows_shown=rows_shown(style, device.display),
-            place=f"waits for {waits_for}" if waits_for else "",
+            place=f"waits for {runner.asked.what}" if runner.asked else runner.presenter.why,
             paused=runner.paused,
             simulated=device.engine.steered,
             device="device: starts" if newest is None else f"device: {why}",

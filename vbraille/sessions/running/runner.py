@@ -104,7 +104,7 @@ class Runner:
         self._view: SessionView | None = None
         self._suspension = Suspension()
         self._deaths = 0
-        self._break_wanted = self._late = False
+        self._break_wanted = False
         self._told: dict[str, Any] = {}  # what the event of a run says
         self._began_s = self._before_s = self._free_s = self._paused_s = 0.0
         # When the "warning", the end of the "exposure", of the time for an "answer", and of a
@@ -307,7 +307,6 @@ class Runner:
 
     def _present(self, trial: Trial) -> None:
         """Show the stimuli of a trial, and wait for all but the last to be read."""
-        self._late = False
         for number in range(len(trial.stimuli)):
             self.stimulus = number
             self._show(trial)
@@ -380,7 +379,6 @@ class Runner:
         told: dict[str, Any] = {"answer": answer, "typed": line.text, **_numbered(line)}
         if self.is_shown:
             told |= {} if self.presenter.reached else {"early": True}
-            told |= {"late": True} if self._late else {}
         self._withdraw()
         self._log("answer", **told)
         self.say(f"answer: {self.name}, {asks.said(answer, spelling)}")
@@ -397,7 +395,7 @@ class Runner:
         scale = self.protocol.asks.confidence
         if self._answers.typed and line is None:
             self.say(f"confidence: {self.name}; type {scale.least} to {scale.most}")
-        line, sure = self._ask_for(self._of_trial("confidence"), scale.parse, line)
+        line, sure = self._ask_for(self._of_trial("rating"), scale.parse, line)
         self._log("confidence", confidence=sure, **_numbered(line))
         self.say(f"rated: {self.name}, confidence {sure}")
         self._free_s = self.device.now_s
@@ -443,7 +441,7 @@ class Runner:
 
     def _await_enter(self) -> None:
         """Wait until Enter is typed."""
-        while self._wait_for_line(Asked("go")).text.strip():
+        while self._wait_for_line(Asked("Enter")).text.strip():
             self.say("no answer is waited for now; Enter goes on")
 
     def _wait_for_line(self, asked: Asked) -> Line:
@@ -602,7 +600,7 @@ class Runner:
                     self._free_s = now_s
                     raise Again
                 case "answer":
-                    self._late = True
+                    self._log("late")
                     self.say(f"late: {self.name}, after {pace.answer_s:g} s")
 
     def _end_reading(self, by: str, at_s: float | None = None) -> None:
