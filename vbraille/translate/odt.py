@@ -6,7 +6,7 @@ import posixpath
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.translate.numbering import Level, Numbering, whole
+from vbraille.translate.numbering import Level, Numbering, counted, whole
 from vbraille.translate.office import (
     Document,
     Look,
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 _NAMES = names("odt")
-_MOST_REPEATED = 1_000  # columns, rows or blanks
 _NUMBERED = ("list-level-style-number", "outline-level-style")
 
 
@@ -80,7 +79,7 @@ class _Odt(Document):
             case "p" | "h" as name:
                 own = self._styled(element)
                 if name == "h":
-                    own |= heading(max(whole(element.get("outline-level")), 1))
+                    own |= heading(counted(element.get("outline-level")))
                 look = look | own
                 if look.get("hidden"):
                     return
@@ -94,19 +93,21 @@ class _Odt(Document):
                 # So do writers mark a table's head that does not go on at its next page.
                 roles = {self._styled(each).get("role") for each in element.iter("p")}
                 into = into.add("thead") if roles == {"th"} else into
-                for _ in range(_repeated(element, "rows") if element.text.strip() else 1):
+                for _ in range(
+                    counted(element.get("number-rows-repeated")) if element.text.strip() else 1
+                ):
                     self.inner(element, into.add("tr"), look)
             case "table-cell":
                 columns = element.get("number-columns-spanned")
                 rows = element.get("number-rows-spanned")
-                for _ in range(_repeated(element, "columns")):
+                for _ in range(counted(element.get("number-columns-repeated"))):
                     self.inner(element, into.add("td", colspan=columns, rowspan=rows), look)
             case "a" | "span":
                 address = element.get("href").removesuffix("|outline")
                 into = into.add("a", href=address) if address else into
                 self.inner(element, into, look | self._styled(element))
             case "s":
-                self.say(into, " " * min(whole(element.get("c")), _MOST_REPEATED), look)
+                self.say(into, " " * counted(element.get("c")), look)
             case "note":
                 key = element.get("id") or f"note-{len(self.bodies)}"
                 self.bodies[key] = next(element.iter("note-body"), element)
@@ -153,10 +154,6 @@ class _Odt(Document):
             has_marker = item.name == "list-item" and not only_lists
             marker = numbering.marker(at, item.get("start-value")) if has_marker else ""
             self.inner(item, listed.add("li", data_marker=marker), look)
-
-
-def _repeated(element: Element, what: str) -> int:
-    return min(max(whole(element.get(f"number-{what}-repeated")), 1), _MOST_REPEATED)
 
 
 def _level_of(element: Element) -> Level:
