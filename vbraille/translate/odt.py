@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 _NAMES = names("odt")
+_MOST_COPIES = 20_000  # of rows and cells of tables
 _NUMBERED = ("list-level-style-number", "outline-level-style")
 
 
@@ -54,6 +55,7 @@ class _Odt(Document):
         for part in (self.archive.xml("styles.xml", needed=False), root):
             self._read_styles(part)
         self._boxes = {box.get("id"): box for box in root.iter("checkbox")}
+        self._copies = 0
         for body in root.iter("body"):
             self.inner(body, self.body, self.usual)
         return self.blocks(source, self.archive.xml("meta.xml", needed=False))
@@ -94,13 +96,13 @@ class _Odt(Document):
                 roles = {self._styled(each).get("role") for each in element.iter("p")}
                 into = into.add("thead") if roles == {"th"} else into
                 for _ in range(
-                    counted(element.get("number-rows-repeated")) if element.text.strip() else 1
+                    self._times(element.get("number-rows-repeated")) if element.text.strip() else 1
                 ):
                     self.inner(element, into.add("tr"), look)
             case "table-cell":
                 columns = element.get("number-columns-spanned")
                 rows = element.get("number-rows-spanned")
-                for _ in range(counted(element.get("number-columns-repeated"))):
+                for _ in range(self._times(element.get("number-columns-repeated"))):
                     self.inner(element, into.add("td", colspan=columns, rowspan=rows), look)
             case "a" | "span":
                 address = element.get("href").removesuffix("|outline")
@@ -122,6 +124,12 @@ class _Odt(Document):
                 into.add("canvas")
             case name:
                 self.inner(element, into.add("div") if name in self.names["drawn"] else into, look)
+
+    def _times(self, said: str) -> int:
+        """How often a row or a cell stands, as long as a book can have so many."""
+        times = counted(said)
+        self._copies += times - 1
+        return times if self._copies < _MOST_COPIES else 1
 
     def _frame(self, frame: Element, into: Element, look: Look) -> None:
         """Read a picture by its text, a formula, a box by what is in it; mark all else."""
