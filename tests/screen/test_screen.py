@@ -38,7 +38,6 @@ def test_lines_of_brltty_are_cells_and_print():
     talk.feed('é\\\\ef"\r\nBraille "1|12| |12345678| |14"\nCSRROW 5\n'.encode())
     assert talk.masks.tolist() == [[1, 3, 0], [255, 0, 9]]
     assert talk.text == 'a"é\\ef'
-    assert talk.status["CSRROW"] == 5
     assert not said
 
 
@@ -187,6 +186,8 @@ def test_each_key_asks_for_what_brltty_knows_and_finger_routes(alone):
     keys = bindings("usual", screen.where)
     keys["n"].run(screen)
     assert brltty.recv(100) == b"LNDN\n"
+    keys["i"].run(screen)
+    assert brltty.recv(100) == b"INFO\n"
     keys["enter"].run(screen)
     assert brltty.recv(100) == b"ROUTE 1\n"
     device.x_mm = None
@@ -194,11 +195,19 @@ def test_each_key_asks_for_what_brltty_knows_and_finger_routes(alone):
     assert "no cell" in heard[-1]
     screen.route(0)
     assert "first" in heard[-1]
-    brltty.send(b"BRLROW 4\nCSRROW 5\nBRLCOL 1\nCSRCOL 7\n")
+
+
+def test_keys_change_how_the_screen_feels(alone):
+    screen, device, brltty, heard = alone
+    brltty.send(b'Braille "125|15|123"\n')
     screen.idle(5.0)
-    keys["i"].run(screen)
-    assert "row 4" in heard[-1]
-    assert "column 7" in heard[-1]
+    x_mm = np.arange(0.0, 30.0, 0.1)
+    flat = device.put_so_far[-1][0].path(x_mm)
+    for _ in range(5):
+        bindings("usual", screen.where)["t"].run(screen)
+    assert "texture" in heard[-1]
+    textured = device.put_so_far[-1][0].path(x_mm)
+    assert np.abs(np.diff(textured, axis=0)).sum() > 1.05 * np.abs(np.diff(flat, axis=0)).sum()
 
 
 def test_a_socket_is_its_users_own_and_one_that_is_left_over_is_taken(tmp_path):

@@ -47,8 +47,6 @@ class Talk:
         Dot masks.
     text : str
         Print, a character for each cell, row after row.
-    status : dict[str, int]
-        Numbers of BRLTTY's state, such as ``CSRROW``.
     hello : str
         The first line, which tells BRLTTY the size of the display.
     """
@@ -56,7 +54,6 @@ class Talk:
     def __init__(self, rows: int, cells: int, say: Callable[[str], None]) -> None:
         self.masks = np.zeros((rows, cells), np.uint8)
         self.text = " " * self.masks.size
-        self.status: dict[str, int] = {}
         self.hello = f"Cells {cells} {rows}"
         self._say, self._said = say, set[str]()
         self._rest = b""
@@ -88,9 +85,7 @@ class Talk:
             self.masks = np.array(fitted, np.uint8).reshape(self.masks.shape)
         elif kind == "VISUAL" and content.startswith('"') and content.endswith('"'):
             self.text = re.sub(r"\\(.)", r"\1", content[1:-1])[:size].ljust(size)
-        elif content.isascii() and content.isdigit():
-            self.status[kind] = int(content)
-        else:
+        elif not (content.isascii() and content.isdigit()):  # those are numbers of its state
             self.remark(f"BRLTTY: not understood: {printable(line[:_SHOWN])}")
 
 

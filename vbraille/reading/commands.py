@@ -73,7 +73,7 @@ _MODULES = {
     Where.FIGURE: ("picture",),
     Where.GAME: ("game",),
     Where.TUNING: ("tuning",),
-    Where.SCREEN: ("screen",),
+    Where.SCREEN: ("screen", "feeling"),
 }
 _SPOKEN = {
     " ": "space", ",": "comma", ";": "semicolon", ".": "full stop", "/": "slash",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from vbraille.errors import InputError, VbrailleError
 from vbraille.knobs import KNOBS
-from vbraille.reading.commands import both_ways, command
+from vbraille.reading.commands import Where, both_ways, command
 from vbraille.render import MAPPINGS
 from vbraille.render.braille.mappings import single_row
 from vbraille.translate import Book, BrailleTable, find_table
@@ -42,6 +42,8 @@ def _tune(reader: Reader, said: str, **changes: Any) -> None:
         reader.say(said)
 
 
+_BOTH = Where.BOOK | Where.SCREEN
+
 for name, ways, keys, nvda in (
     ("texture", ("more texture", "less texture"), "t | T", "r | R"),
     ("contrast", ("more contrast", "less contrast"), "c | C", ""),
@@ -50,19 +52,16 @@ for name, ways, keys, nvda in (
     ("cell_gap", ("more cell gap", "less cell gap"), "j | J", ""),
 ):
     hyphened = name.replace("_", "-")
-    both_ways(ways, keys, nvda, name=f"more-{hyphened} less-{hyphened}")(partial(_turn, name=name))
+    # Dots of other sizes make other numbers of cells, which BRLTTY has been told.
+    where = _BOTH if name in ("texture", "contrast") else Where.BOOK
+    names = f"more-{hyphened} less-{hyphened}"
+    both_ways(ways, keys, nvda, name=names, where=where)(partial(_turn, name=name))
 
 
-@command("next dot mapping", "#", steers=True)
+@command("next dot mapping", "#", where=_BOTH, steers=True)
 def mapping(reader: Reader) -> None:
     chosen = _after(reader.style.mapping, _mappings(reader))
     _tune(reader, mapping_said(chosen), mapping=chosen)
-
-
-@command("in the live view: the next mapping beside it", "|", steers=True)
-def beside(reader: Reader) -> None:
-    reader.beside_mapping = chosen = _after(reader.beside_mapping, [None, *_mappings(reader)])
-    reader.say(f"beside: {'nothing' if chosen is None else mapping_said(chosen)}")
 
 
 def _after(now: Any, found: list[Any]) -> Any:

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from vbraille.reading.outputs import Output
     from vbraille.reading.places import KeptBook
     from vbraille.render import BrailleStyle
-    from vbraille.render.braille.mappings import Mapping
     from vbraille.translate import Book
 
 _GATHERED = 20  # blocks at a time, for a search to come
@@ -124,7 +123,6 @@ class Reader(Surface):
         self.scroll_cells_s = self._cells_due = 0.0  # cells a second by time; 0 for by hand
         self.has_pages: bool | None = None  # whether the book says where pages begin, once known
         self.note_from: int | None = None  # place of the reference that led to a note
-        self.beside_mapping: Mapping | None = None  # that the live view shows beside the array
         self.lines_read = 0
         self._found: int | None = None  # place of the last hit or mark that was gone to
         self._ticked_s = self._kept_s = self._watched_s = 0.0
@@ -381,7 +379,7 @@ class Reader(Surface):
         """Keep the place now."""
         line, self._unkept = self._unkept, None
         if line is not None:
-            self.kept.keep(line.place, self.layout.progress(line), around(line))
+            self.kept.keep(line.place, self.book.source.progress(line.place), around(line))
 
     def come_back(self) -> None:
         """Put the text under the hand again, after a figure was felt in its place."""

@@ -161,16 +161,6 @@ class Screen(Surface):
         else:
             self.route(self.cell)
 
-    @command("where the line and the cursor are on the screen", "i", where=Where.SCREEN,
-             first=True, name="where")  # fmt: skip
-    def say_where(self) -> None:
-        """Say where the line and the cursor are."""
-        at = {
-            name: self.talk.status.get(name, 0) for name in ("BRLROW", "BRLCOL", "CSRROW", "CSRCOL")
-        }
-        self.say("line: row {BRLROW}, column {BRLCOL}; cursor: row {CSRROW}, column {CSRCOL}"
-                 .format(**at))  # fmt: skip
-
 
 # BRLTTY's commands with their keys; those are of `read`, where they mean the same. Help names the
 # first, and pages of the live view offer them.
@@ -180,7 +170,8 @@ _ASKED: Final = {
     "FWINRT": ("pan right, then to the next line", "right"),
     "TOP": ("first line of the screen", "< ctrl-home"),
     "HOME": ("to the cursor", "."),
-    "CSRTRK": ("follow the cursor, or stay", "C"),
+    "CSRTRK": ("follow the cursor, or stay", "V"),
+    "INFO": ("where the line and the cursor are, in braille; again: back", "i"),
     "FWINLT": ("pan left, then to the previous line", "left"),
     "LNBEG": ("start of the line", "home"),
     "LNEND": ("end of the line", "end"),
@@ -190,11 +181,11 @@ _ASKED: Final = {
     "NXDIFLN": ("next line that differs", "pagedown"),
     "PRDIFLN": ("previous line that differs", "pageup"),
     "RETURN": ("to the cursor, or back from it", ","),
-    "CSRVIS": ("show the cursor, or hide it", "c"),
+    "CSRVIS": ("show the cursor, or hide it", "v"),
     "FREEZE": ("hold the screen still, or go on", "f"),
     "SIXDOTS": ("computer braille of six dots or eight", "6"),
 }
-_FIRST: Final = 6
+_FIRST: Final = 7
 _BUTTONS: Final = {"LNDN": "button:1", "LNUP": "button:2"}
 
 for place, (name, (words, keys)) in enumerate(_ASKED.items()):

@@ -40,7 +40,7 @@ class FoundScene(NamedTuple):
 
 
 class Remarks:
-    """What is said of a file of another format, with the lines and elements for which it holds."""
+    """Remarks on a file of another format, with the lines and elements for which they hold."""
 
     def __init__(self) -> None:
         self._places: dict[str, list[tuple[int, str]]] = defaultdict(list)

@@ -24,9 +24,9 @@ class Undefined(StrEnum):
     MARK
         A sign for an unknown character; emoji by their names.
     NAME
-        Its name in brackets.
+        The name of the character, in brackets.
     CODE
-        Its number in brackets.
+        The number of the character, in brackets.
     DROP
         Nothing.
     """

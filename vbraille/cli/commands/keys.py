@@ -13,8 +13,8 @@ from vbraille.cli.printing import show
 @options.command(
     "keys --keys nvda",
     options.keys,
-    options.option("--of", type=click.Choice(["book", "picture", "game", "tuning"]), default="book",
-                   show_default=True, help="What the keys are for."),
+    options.option("--of", type=click.Choice(["book", "picture", "game", "tuning", "screen"]),
+                   default="book", show_default=True, help="What the keys are for."),
     options.json,
     options.settings,
 )  # fmt: skip

@@ -41,6 +41,6 @@ def command(ctx: click.Context, **chosen: Any) -> None:
         mode = "server" if chosen["connect"] else "client"
         equipment.say(f"start BRLTTY: brltty -b vr -d {mode}:{place}")
         if not port.local:
-            equipment.say(f"{place}: any user of this machine may show text there and hear keys")
+            equipment.say(f"{place}: any program that reaches it may show text and hear keys")
         equipment.explore(Screen(port, device, equipment.outputs, model.style, equipment.keyboard))
     say_summary(device)

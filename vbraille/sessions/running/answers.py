@@ -33,7 +33,7 @@ class Asked(NamedTuple):
         What is asked of the questionnaire.
     """
 
-    what: Literal["answer", "confidence", "reply", "Enter"]
+    what: Literal["answer", "rating", "reply", "Enter"]
     trial: Trial | None = None
     attempt: int = 0
     felt: Callable[[], list[FeltFrames]] = list

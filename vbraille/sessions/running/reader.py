@@ -118,7 +118,7 @@ class Simulated(Answers):
         habits = random_of(f"{drawn} habits")
         lapsed = habits.random() < self._habits.lapses
         alarmed = habits.random() < self._habits.false_alarms
-        if asked.what == "confidence":
+        if asked.what == "rating":
             scale = self._question.confidence
             # After a crash between an answer and its confidence there is nothing left to think of.
             is_sure = asked.felt() and self._answer(asked, trial, habits) == self._answered

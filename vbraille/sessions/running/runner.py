@@ -395,7 +395,7 @@ class Runner:
         scale = self.protocol.asks.confidence
         if self._answers.typed and line is None:
             self.say(f"confidence: {self.name}; type {scale.least} to {scale.most}")
-        line, sure = self._ask_for(self._of_trial("confidence"), scale.parse, line)
+        line, sure = self._ask_for(self._of_trial("rating"), scale.parse, line)
         self._log("confidence", confidence=sure, **_numbered(line))
         self.say(f"rated: {self.name}, confidence {sure}")
         self._free_s = self.device.now_s
