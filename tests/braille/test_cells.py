@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from vbraille.braille.spelling import spell
 from vbraille.translate import Cells
 
 SIX_DOTS = bytes(range(64))
@@ -45,12 +46,10 @@ class TestSpellings:
         table = " A1B'K2L@CIF/MSP\"E3H9O6R^DJG>NTQ,*5<-U8V.%[$+X!&;:4\\0Z7(_?W]#Y)="
         assert bare(SIX_DOTS).to_brf() == table
 
-    @pytest.mark.parametrize(("letter", "dots"), LETTERS.items())
-    def test_letters(self, letter, dots):
-        cells = Cells.from_dots(dots)
-        assert cells.to_brf() == letter
-        assert cells.to_dots() == dots
-        assert Cells.from_brf(letter.lower()).to_dots() == dots
+    def test_letters(self):
+        for letter, dots in LETTERS.items():
+            cells = Cells.from_brf(letter.lower())
+            assert (cells.to_brf(), cells.to_dots()) == (letter, dots)
 
     def test_brf_in_lower_case_is_the_same(self):
         lower = "".join(chr(ord(c) + 32) if ord(c) >= 0x40 else c for c in bare(SIX_DOTS).to_brf())
@@ -66,16 +65,12 @@ class TestSpellings:
         for mask, dots in enumerate(bare(ALL).to_dots().split(" ")):
             raised = [d for d in range(1, 9) if mask >> d - 1 & 1]
             assert dots == ("-".join(map(str, raised)) or "0")
-        assert Cells.from_dots(bare(ALL).to_dots()).masks.tobytes() == ALL
-
-    def test_dots_without_hyphens_and_with_any_white_space(self):
-        assert Cells.from_dots("124\n0\t 8").masks.tolist() == [0b1011, 0, 0x80]
 
     @given(st.binary(max_size=50))
     def test_spellings_come_back(self, masks):
         cells = bare(masks)
         assert Cells.from_unicode(cells.to_unicode()).masks.tobytes() == masks
-        assert Cells.from_dots(cells.to_dots()).masks.tobytes() == masks
+        assert bytes(spell(cells.to_dots(), {})) == masks
         six = bare(m & 0x3F for m in masks)
         assert Cells.from_brf(six.to_brf()).masks.tobytes() == six.masks.tobytes()
 
@@ -93,11 +88,6 @@ class TestSpellings:
     def test_what_is_no_pattern(self, text):
         with pytest.raises(ValueError, match="is not a braille pattern"):
             Cells.from_unicode(text)
-
-    @pytest.mark.parametrize("text", ["9", "1-", "-1", "1--2", "00", "1-0", "a", "1,2", "¹", "١"])
-    def test_what_are_no_dots(self, text):
-        with pytest.raises(ValueError, match="is not the dots of a cell"):
-            Cells.from_dots(f"1 {text} 2")
 
 
 class TestMaps:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tests.translate.reading import opened
 from vbraille.layout import Layout, wrap_text
-from vbraille.translate import Book, BrailleTable, choose_table, remarks, text_source
+from vbraille.translate import Book, BrailleTable, Cells, choose_table, remarks, text_source
 
 TEXTS = Path(__file__).parents[2] / "texts"
 TABLES = {name: BrailleTable(name) for name in ("en-ueb-g2.ctb", "de-g2.ctb", "zh-tw.ctb")}
@@ -38,7 +38,7 @@ def layout(text, width, table="en-ueb-g2.ctb", **how):
 
 
 def cells(lines):
-    return [line.printed.to_unicode() for line in lines]
+    return [Cells.bare(line.masks).to_unicode() for line in lines]
 
 
 @given(
@@ -101,7 +101,7 @@ def test_a_line_far_away_needs_none_of_those_before():
     made = Layout(Book(text_source("one two three\n\n" * 500), TABLES["en-ueb-g2.ctb"]), 30)
     line, _ = made.place(14 * 400)
     assert line.text == "one two three"
-    assert made.progress(line) > 0.7
+    assert made.book.source.progress(line.place) > 0.7
     assert made.beside(line, 3).block.number == line.block.number + 3
     assert len(made._before) == 1  # nothing was counted
     assert made.number(line) == 401

@@ -90,8 +90,9 @@ def test_superscripts_have_the_table_s_sign():
 
 def test_emphasis_is_that_of_the_table():
     table = BrailleTable("en-ueb-g2.ctb")
-    assert table.translate("one", [Mark(MarkKind.BOLD, 0, 3)]).to_unicode() == "⠘⠂⠐⠕"
-    assert table.translate("one", [Mark(MarkKind.LINK, 0, 3, "x")]).to_unicode() == "⠐⠕"
+    bold, link = Mark(MarkKind.BOLD, 0, 3), Mark(MarkKind.LINK, 0, 3, "x")
+    assert table.write("one", [bold]).cells(3).to_unicode() == "⠘⠂⠐⠕"
+    assert table.write("one", [link]).cells(3).to_unicode() == "⠐⠕"
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -156,21 +155,3 @@ class Cells:
     def to_dots(self) -> str:
         """Dot numbers, ``1-2-4`` a cell and ``0`` for a blank one, with a space between cells."""
         return " ".join(map(_DOTS.__getitem__, self.masks.tolist()))
-
-    @classmethod
-    def from_dots(cls, text: str) -> Cells:
-        """Cells of dot numbers, ``1-2-4`` or ``124``, with white space between cells.
-
-        Raises
-        ------
-        ValueError
-            If a word is not the dots of a cell.
-        """
-        masks = []
-        for word in text.split():
-            if not re.fullmatch(r"0|[1-8](-?[1-8])*", word):
-                raise ValueError(
-                    f"{word!r} is not the dots of a cell, such as 1-2-4, or 0 for none"
-                )
-            masks.append(mask_of(int(dot) for dot in word if dot not in "-0"))
-        return cls.bare(np.array(masks, np.uint8))

@@ -6,7 +6,7 @@ import re
 import string
 from typing import TYPE_CHECKING
 
-from vbraille.braille.cells import UNICODE_BLANK, Cells, dots_of
+from vbraille.braille.cells import UNICODE_BLANK, Cells, dots_of, mask_of
 from vbraille.wording import count
 
 if TYPE_CHECKING:
@@ -204,11 +204,13 @@ def _cells(text: str, keys: dict[str, int]) -> list[tuple[str, int]]:
 
 def _by_dots(word: str) -> int:
     dots = word.replace("-", "")
+    if not re.fullmatch(r"0|[1-8](-?[1-8])*", word):
+        raise ValueError(f"{word!r} is not the dots of a cell, such as 1-4, or 0 for none")
     if len(set(dots)) < len(dots):  # two cells without the space between them
         raise ValueError(
             f"{_shorten(word)} has a dot twice; put a space between the dot numbers of two cells"
         )
-    return int(Cells.from_dots(word).masks[0])
+    return mask_of(map(int, dots.strip("0")))
 
 
 def _by_character(character: str, keys: dict[str, int]) -> int:

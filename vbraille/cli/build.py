@@ -212,7 +212,7 @@ class Page:
     def progress(self, line: Line) -> float:
         """Share of the lines that is done with the last of `lines`, 0 to 1."""
         if self.last is None:
-            return self.layout.progress(line)
+            return self.layout.book.source.progress(line.place)
         return self._given / (self.last - self.first + 1)
 
     def remarks(self) -> Iterator[str]:

@@ -243,7 +243,7 @@ def _make(numbers, table, scratch, at, own, flags, part, output, held, target):
     own : float64[FLOATS]
         Numbers of the tick's record.
     flags, part
-        Values of the record, too.
+        Flags of the record, and its part of the picture.
     output, held, target : float64[rows, columns]
         The frame of the tick before, which is changed, the one that the fade began with, and room
         for another.

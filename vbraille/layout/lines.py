@@ -104,11 +104,6 @@ class Line:
         return self.indent + len(self.cells)
 
     @property
-    def printed(self) -> Cells:
-        """Line as it would be embossed: its indent and its cells, without their way to the text."""
-        return Cells.bare(self.masks)
-
-    @property
     def text(self) -> str:
         """Text that the line stands for; the lines of a block together are the block's text.
 
@@ -285,10 +280,6 @@ class Layout:
                     cell, _ = cells.of_source(max(place, int(cells.starts[0])))
                 return line, line.indent + cell
         return None
-
-    def progress(self, line: Line) -> float:
-        """Tell how much of the book stands before a line, 0 to 1."""
-        return self.book.source.progress(line.place)
 
     def line(self, number: int) -> Line | None:
         """Line of a number, from 1, counted from the start; None past either end."""

@@ -414,8 +414,11 @@ class _Felt:
             return
         parts: list[_Part] = []
         for number, element in enumerate(self._scene.elements):
-            for pattern, sentence in (*_faint(element), *self._alone(element)):
+            for pattern, sentence in _faint(element):
                 yield self._said(number, pattern, sentence)
+            for pattern in each(element):
+                for sentence in (*self._on_image(pattern), *self._on_fill(pattern)):
+                    yield self._said(number, pattern, sentence)
             for pattern, covers in _open(element, self._scene.operation == "overwrite"):
                 box = bounds(pattern, self._known)
                 if box is not None and len(parts) <= _MOST_PARTS:
@@ -469,18 +472,10 @@ class _Felt:
         shown = SceneMap(alone, self._loaded.assets)
         return (rows, columns), shown.deflections(x_mm, y_mm, is_mask=is_mask, every_layer=True)
 
-    def _alone(self, element: AnyPattern) -> Iterator[tuple[AnyPattern, str]]:
-        """Images whose lines are down, and shapes without room for their fill or its waves."""
-        for pattern in each(element):
-            sentences: Iterator[str] = iter(())
-            if isinstance(pattern, Circle | Polygon | PathShape):
-                sentences = self._filled(pattern)
-            elif isinstance(pattern, Image) and not pattern.outside:
-                sentences = self._image(pattern)
-            for sentence in sentences:
-                yield pattern, sentence
-
-    def _image(self, image: Image) -> Iterator[str]:
+    def _on_image(self, image: AnyPattern) -> Iterator[str]:
+        """Sentence about an image whose lines are down."""
+        if not isinstance(image, Image) or image.outside:
+            return
         intensities = self._loaded.assets.bitmaps[image].intensities
         if not intensities.any():
             other = "gray" if image.channel == "alpha" else "alpha"
@@ -494,10 +489,11 @@ class _Felt:
                 "inverted_source = true to feel what is black"
             )
 
-    def _filled(self, shape: Circle | Polygon | PathShape) -> Iterator[str]:
-        fill = shape.fill
-        if fill is None:
+    def _on_fill(self, shape: AnyPattern) -> Iterator[str]:
+        """Sentences about a shape without room for its fill, or for the waves of that."""
+        if not isinstance(shape, Circle | Polygon | PathShape) or shape.fill is None:
             return
+        fill = shape.fill
         box = around(points_of(shape)).grown(shape.radius_mm if isinstance(shape, Circle) else 0.0)
         if isinstance(fill.texture, LinearGrating):
             angle, wave_mm = math.radians(fill.texture.travel_deg), fill.texture.wave.length

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vbraille.braille.cells import Cells
 from vbraille.display import check_rate
 from vbraille.errors import InputError
 from vbraille.layout import Layout, cells_per_line
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from vbraille.braille.cells import Cells
     from vbraille.display import Display
     from vbraille.layout import Line
     from vbraille.recording import Print, Recording
@@ -101,7 +101,7 @@ class RenderedLine(_Rendered):
     @property
     def cells(self) -> Cells:
         """Cells of the line as the line would be embossed."""
-        return self.line.printed
+        return Cells.bare(self.line.masks)
 
     @property
     def text(self) -> str:

@@ -156,7 +156,7 @@ class LiveOutput(Output):
             "geometry": geometry_shown(geometry),
             "rows_shown": rows_shown(style, self._device.display),
             "lines": self._lines(reader),
-            "place": f"{reader.named}, {100 * reader.layout.progress(reader.line):.0f} %",
+            "place": f"{reader.named}, {100 * source.progress(reader.line.place):.0f} %",
             "knobs": [
                 KnobShown(
                     knob.name, knob.label, knob.unit, knob.value(style), knob.step, knob.low,

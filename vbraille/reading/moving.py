@@ -131,7 +131,7 @@ def info(reader: Reader) -> None:
     said = (
         reader.named,
         page and f"page {page}",
-        f"{100 * reader.layout.progress(reader.line):.0f} percent",
+        f"{100 * reader.book.source.progress(reader.line.place):.0f} percent",
         heading and f"heading: {heading}",
     )
     reader.say(", ".join(filter(None, said)))

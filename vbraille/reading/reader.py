@@ -381,7 +381,7 @@ class Reader(Surface):
         """Keep the place now."""
         line, self._unkept = self._unkept, None
         if line is not None:
-            self.kept.keep(line.place, self.layout.progress(line), around(line))
+            self.kept.keep(line.place, self.book.source.progress(line.place), around(line))
 
     def come_back(self) -> None:
         """Put the text under the hand again, after a figure was felt in its place."""

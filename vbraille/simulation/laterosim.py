@@ -150,7 +150,8 @@ class LateroSimulator:
     def _note(self, client: tuple[str, int], now_us: int) -> None:
         """Note who has asked, and move the hand once it has waited for long enough."""
         if client != self._client:
-            self._client, self._came_us = client, now_us
+            self._came_us = now_us if self._client is None else self._came_us
+            self._client = client
             self._ever_us = self._ever_us or now_us
             self._say(f"asked by {client[0]}:{client[1]}")
         self._asked_us = now_us

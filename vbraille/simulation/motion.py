@@ -129,29 +129,28 @@ class Course:
     """
 
     def __init__(self, display: Display, home: Sequence[float], now_ns: int = 0) -> None:
-        self._axes = 1.0, float(display.height_mm > 0), float(display.turns)
+        self._axes = np.array([1.0, display.height_mm > 0, display.turns])
         self.begun_ns = now_ns
-        self._t_s = np.zeros(1)
-        self._ways = [np.full(1, place) for place in home]
+        # Times of the knots, and x, y and θ then.
+        self._knots = np.array([[0.0], *([place] for place in home)])
 
     def is_over(self, now_ns: Any) -> Any:
         """Tell whether the hand is at the end of its motion, at a time or at each of an array."""
-        return (now_ns - self.begun_ns) / _NS_PER_S >= self._t_s[-1]
+        return (now_ns - self.begun_ns) / _NS_PER_S >= self._knots[0, -1]
 
     def at(self, now_ns: Any) -> list[Any]:
         """Return the place x and y, and the angle, at a time, or at each of an array of times."""
         t_s = (now_ns - self.begun_ns) / _NS_PER_S
-        return [np.interp(t_s, self._t_s, way) for way in self._ways]
+        return [np.interp(t_s, self._knots[0], way) for way in self._knots[1:]]
 
     def rest(self, now_ns: int) -> Motion | None:
         """Return the motion that is left of the present one; None if it is over."""
-        t_s = (now_ns - self.begun_ns) / _NS_PER_S
-        later = self._t_s > t_s
-        if not later.any():
+        if self.is_over(now_ns):
             return None
-        here = zip(self.at(now_ns), self._ways, strict=True)
-        ways = (np.append(now, way[later]) for now, way in here)
-        return Motion(np.append(0.0, self._t_s[later] - t_s), *ways)
+        here = np.array([(now_ns - self.begun_ns) / _NS_PER_S, *self.at(now_ns)])
+        later = self._knots[:, self._knots[0] > here[0]]
+        t_s, *ways = np.column_stack((here, later))
+        return Motion(t_s - t_s[0], *ways)
 
     def go_to(
         self,
@@ -161,18 +160,16 @@ class Course:
         least_s: float = 0.0,
     ) -> None:
         """Go straight to a place; that takes no time if the hand is there, unless it must."""
-        here = np.array(self.at(now_ns))
-        there = np.array(to) * self._axes
+        here, there = np.array(self.at(now_ns)), np.array(to) * self._axes
         x_mm, y_mm, theta_rad = np.abs(there - here)
         way_s = max(math.hypot(x_mm, y_mm) / speed_mm_s, theta_rad / TURN_RAD_S, least_s)
-        self.begun_ns, self._t_s = now_ns, np.array([0.0, way_s])
-        self._ways = list(np.stack((here, there), axis=1))
+        self.begun_ns = now_ns
+        self._knots = np.column_stack(((0.0, *here), (way_s, *there)))
 
     def follow(self, motion: Motion, now_ns: int) -> None:
         """Go along a motion, and first to where it begins; y and θ stay if it has none."""
         given = zip(self.at(now_ns), (motion.x_mm, motion.y_mm, motion.theta_rad), strict=True)
         ways = [np.full(motion.t_s.size, here) if way is None else way for here, way in given]
         self.go_to([float(way[0]) for way in ways], now_ns)
-        self._t_s = np.append(0.0, self._t_s[-1] + motion.t_s)
-        begun = zip(self._ways, ways, self._axes, strict=True)
-        self._ways = [np.append(here[0], way * axis) for here, way, axis in begun]
+        (begun, arrived), axes = self._knots.T, self._axes[:, None]
+        self._knots = np.column_stack((begun, np.vstack((arrived[0] + motion.t_s, ways * axes))))

@@ -49,6 +49,8 @@ class Book:
 
     Attributes
     ----------
+    cells : function
+        Gives the cells of a block of the source; they know the places that they stand for.
     otherwise : dict
         For each block that was translated, what was written otherwise than it stands.
     """
@@ -65,12 +67,8 @@ class Book:
         self.source, self.table = source, table
         self.language, self.grade, self.switch = language, grade, switch
         self.otherwise: dict[int, Counter[tuple[Kind, str]]] = {}
-        self._cells = lru_cache(_REMEMBERED)(self._translate)
+        self.cells = lru_cache(_REMEMBERED)(self._translate)
         self._table_for = cache(self._find_table)
-
-    def cells(self, block: Block) -> Cells:
-        """Cells of a block of the source; they know the places that they stand for."""
-        return self._cells(block)
 
     def _translate(self, block: Block) -> Cells:
         if block.cells is not None:

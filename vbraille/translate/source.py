@@ -90,7 +90,8 @@ class Source:
         self.members: Callable[[str], bytes] | None = None  # files within the book
         self._blocks: list[Block] = []
         self._anchors: dict[str, int] = {}
-        self._notes: dict[str, bool] = {}  # whether they are new
+        self._notes: list[str] = []
+        self._given = 0  # notes
         finalize(self, stream.close)
         self._reading = (piece for block in reader(self) for piece in _pieces(block))
         self.gather(1)
@@ -159,13 +160,13 @@ class Source:
 
     def note(self, sentence: str) -> None:
         """Keep a sentence on what was read otherwise than the file says, for `notes`."""
-        self._notes.setdefault(sentence, True)
+        if sentence not in self._notes:
+            self._notes.append(sentence)
 
     def notes(self) -> list[str]:
         """Sentences on what was read otherwise than the file says; each is given once."""
-        notes = [sentence for sentence, is_new in self._notes.items() if is_new]
-        self._notes = dict.fromkeys(self._notes, False)
-        return notes
+        given, self._given = self._given, len(self._notes)
+        return self._notes[given:]
 
     def file(self, address: str) -> bytes:
         """Bytes of a file within the book, such as a figure.

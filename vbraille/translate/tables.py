@@ -179,13 +179,13 @@ class BrailleTable:
         except RuntimeError:
             names = [table.name for table in list_tables()]
             raise InputError(
-                f"unknown braille table {name[:_LONGEST_NAME]!r}"
-                f"{nearest(name[:_LONGEST_NAME], names, 3)} (vbraille tables lists all)"
+                f"unknown braille table {name!r}{nearest(name, names, 3)} "
+                f"(vbraille tables lists all)"
             ) from None
 
-    def translate(self, text: str, marks: Sequence[Mark] = ()) -> Cells:
-        """Cells of a paragraph, with the emphasis of its parts; the first stands for place 0."""
-        return self.write(text, marks).cells(len(text))
+    def translate(self, text: str) -> Cells:
+        """Cells of a paragraph; the first stands for place 0."""
+        return self.write(text).cells(len(text))
 
     def write(self, text: str, marks: Sequence[Mark] = ()) -> Written:
         """Dots of a text, with what was written otherwise than it stands."""

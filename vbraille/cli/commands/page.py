@@ -69,6 +69,7 @@ def command(ctx: click.Context, **chosen: Any) -> None:
 
 def _laid(page: Page, form: str) -> Iterable[bytes]:
     """Write lines as they are laid out for a display or for a number of cells."""
+    from vbraille.braille.cells import Cells
     from vbraille.layout.writing import pef
     from vbraille.wording import printable
 
@@ -79,7 +80,7 @@ def _laid(page: Page, form: str) -> Iterable[bytes]:
         yield from pef(pages, _head(book, width, _LINES), width, _LINES, rowgap=_rowgap(book))
         return
     for line in page.lines():
-        cells = line.printed
+        cells = Cells.bare(line.masks)
         if form == "text":
             text = printable(line.text)
         elif form == "brf":

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections import defaultdict
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
@@ -270,7 +269,7 @@ class Row(NamedTuple):
 
 
 @cache
-def rows_of(owner: str) -> dict[str, Row]:
+def rows_of(*names: str) -> dict[str, Row]:
     """Rows of a part by its name, of a pattern or a texture by its type; none if it has none."""
     rows: dict[str, Row] = {}
     owners: tuple[str, ...] = ()
@@ -278,7 +277,7 @@ def rows_of(owner: str) -> dict[str, Row]:
         written, _, here = line.partition("#")[0].partition(">")
         if not line.startswith(" "):
             owners = tuple(written.split())
-        elif owner in owners:
+        elif any(owner in names for owner in owners):
             name, kind, *usual = written.split(None, 2)
             rows[name] = Row(kind, "".join(usual).strip(), here.strip())
     return rows
@@ -380,7 +379,7 @@ class Element:
     above
         The element that it is in; None for the root.
     tag
-        The element's name.
+        Name of the element.
     tables
         Names by which the table tells what is in it; none if its text is all that counts.
     """
@@ -397,10 +396,10 @@ class Element:
             self.owner = self.attribute("subtype") or self.attribute("type") or tag
         elif above is not None:
             self.owner, self.path = above.owner, f"{above.path} {tag}".strip()
-        self._rows = {key: row for table in tables for key, row in rows_of(table).items()}
-        self._found: dict[str, list[Any]] = defaultdict(list)
+        self._rows = rows_of(*tables)
+        self._found: dict[str, list[Any]] = {}
         for inner in () if xml is None else xml.iterchildren("*"):
-            self._found[inner.tag.rpartition("}")[2]].append(inner)
+            self._found.setdefault(inner.tag.rpartition("}")[2], []).append(inner)
         if tables and getattr(self, "enable", True):  # no more is said of what is off
             for name, written in self._found.items():
                 row = self._rows.get(name)
@@ -428,10 +427,8 @@ class Element:
 
     def _read(self, name: str, xml: Any, row: Row, kind: str) -> Any:
         """Value of an element in this one, by its kind."""
-        leaf = Element(xml, self.context, self, name)
+        leaf = Element(xml, self.context, self, name, *([kind] if rows_of(kind) else []))
         usual, *more = row.usual.split(" ")
-        if kind in ("pattern", "text"):
-            return leaf
         if kind == "yesno":
             return leaf.yes_no(usual)
         if kind == "words":
@@ -449,7 +446,7 @@ class Element:
         if kind in _LIMITS:
             low, high = map(float, more[-1].split("..")) if more else _LIMITS[kind]
             return leaf.number(float(usual), kind, low, high)
-        return Element(xml, self.context, self, name, kind)
+        return leaf
 
     @property
     def there(self) -> bool:

@@ -717,19 +717,14 @@ def _markers(corner: Element, look: dict[str, Any]) -> VertexMarkers | None:
     return replace(markers, vibration=vibration)
 
 
-def _dot(element: Element) -> Made:
-    return _dotted(element, tuple(element.dot[:1]) or ((0.0, 0.0),), "max")
-
-
 def _dots(element: Element) -> Made:
-    if not element.dot:
+    """Dots of one look, or a single one."""
+    centers, operation = tuple(element.dot), _operation_of(element.operation, "add")
+    if element.owner == "Dot":
+        centers, operation = centers[:1] or ((0.0, 0.0),), "max"
+    if not centers:
         element.say("it has no dots; left out")
         return None
-    return _dotted(element, tuple(element.dot), _operation_of(element.operation, "add"))
-
-
-def _dotted(element: Element, centers: tuple[Any, ...], operation: str) -> Made:
-    """Dots of one look."""
     style = DotStyle(
         **element.here,
         edge_mm=element.ridge.edge_width,
@@ -756,7 +751,7 @@ PATTERNS: Final[dict[str, Maker]] = {
     "Line": _line,
     "Circle": _circle,
     "Polygon": _polygon,
-    "Dot": _dot,
+    "Dot": _dots,
     "Dots": _dots,
 }
 TEXTURES: Final[dict[str, Maker]] = {

@@ -14,11 +14,16 @@ from msgspec import structs
 
 from vbraille.braille.spelling import LETTERS, name_dots, spell, to_braille
 from vbraille.errors import InputError
-from vbraille.sessions.planning.analysis import MEASURES_OF, Analysis
 from vbraille.sessions.planning.design import Compared, ItemList, Setting, StringList
 from vbraille.sessions.planning.items import read_items, read_orders
 from vbraille.sessions.planning.procedures import QuestPlus, quest_of
-from vbraille.sessions.planning.protocol import Condition, Protocol, ProtocolFile
+from vbraille.sessions.planning.protocol import (
+    MEASURES_OF,
+    Analysis,
+    Condition,
+    Protocol,
+    ProtocolFile,
+)
 from vbraille.sessions.planning.trial import Stimulus
 from vbraille.toml import WrongValue, located, read_toml, which
 
@@ -247,21 +252,20 @@ def _chooses(protocol: Protocol) -> Faults:
         return
     scores = asks.scores and not protocol.shows_pictures and not design.passage
     yield "procedure", not scores, f"does not go by answers to {asks.kind!r}"
-    if not isinstance(design, Compared):
-        bounds = table.least is not None and table.most is not None and table.least < table.most
-        yield "procedure.parameter", not (table.parameter and bounds), "needs least below most"
-    else:
-        right = getattr(asks, "right", "more")  # other questions have their own
-        if design.reference is None:
-            preferred = isinstance(table, QuestPlus) and right is None
-            yield "procedure.kind", not preferred, "of preferences is 'quest', without a right one"
-        else:
-            sides = {value > design.reference for value in design.values}
-            fits = len(sides) == 1 < len(design.values) and design.form != "standard"
-            yield "design.values", not fits, "must be the nearest and furthest on one side"
-            unfit = right not in ("more", "less")
-            yield "question.right", unfit, "must be 'more' or 'less' for [procedure]"
+    right = getattr(asks, "right", "more")  # other questions have their own
     least, *_, most = table.levels(design)
+    if not isinstance(design, Compared):
+        named = table.parameter and least < most
+        yield "procedure.parameter", not named, "is needed, and least below most"
+    elif design.reference is None:
+        preferred = isinstance(table, QuestPlus) and right is None
+        yield "procedure.kind", not preferred, "of preferences is 'quest', without a right one"
+    else:
+        sides = {value > design.reference for value in design.values}
+        fits = len(sides) == 1 < len(design.values) and design.form != "standard"
+        yield "design.values", not fits, "must be the nearest and furthest on one side"
+        unfit = right not in ("more", "less")
+        yield "question.right", unfit, "must be 'more' or 'less' for [procedure]"
     for start in getattr(table, "start", ()):
         yield "procedure.start", not least <= start <= most, f"is not from {least:g} to {most:g}"
     if isinstance(table, QuestPlus):

@@ -54,7 +54,7 @@ class Procedure(Table, frozen=True, kw_only=True, tag_field="kind"):
     parameter
         Number of the look of strings that is varied; None if the design compares one.
     least, most
-        Bounds of its values; None if the design has them.
+        Bounds of its values, if the design has none.
     harder
         Whether strings are harder to read with less or with more of it.
     trials
@@ -62,15 +62,15 @@ class Procedure(Table, frozen=True, kw_only=True, tag_field="kind"):
     """
 
     parameter: Parameter | None = None
-    least: Number | None = None
-    most: Number | None = None
+    least: Number = 0.0
+    most: Number = 0.0
     harder: Literal["less", "more"] = "less"
     trials: Count | None = None
 
     def levels(self, design: AnyDesign) -> tuple[float, ...]:
         """Return the levels that are named, or values of which one is preferred, rising."""
         if not isinstance(design, Compared):
-            return self.least or 0.0, self.most or 0.0
+            return self.least, self.most
         away = (abs(value - (design.reference or 0.0)) for value in design.values)
         return tuple(sorted(round(level, PLACES) for level in away))
 

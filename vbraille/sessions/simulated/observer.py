@@ -122,14 +122,14 @@ def smoothing_mm(speed_mm_s: float) -> float:
 
 def reference_per_mm2(width_mm: float, pitch_mm: float) -> float:
     """Unit of evidence E₀: equation 3 for the wave [1 + cos(2πu/W)] / 2, not smoothed."""
-    u_mm = (np.arange(1000) + 0.5) / 1000 * width_mm - width_mm / 2
+    u_mm = np.linspace(-width_mm / 2, width_mm / 2, 2001)
 
-    def slope(at_mm: NDArray[np.float64]) -> NDArray[np.float64]:
+    def wave(at_mm: Floats) -> Floats:
         inside = np.abs(at_mm) < width_mm / 2
-        return np.where(inside, -np.sin(2 * np.pi * at_mm / width_mm) * np.pi / width_mm, 0.0)
+        return np.where(inside, (1 + np.cos(2 * np.pi * at_mm / width_mm)) / 2, 0.0)
 
-    rate = (slope(u_mm + pitch_mm / 2) - slope(u_mm - pitch_mm / 2)) / pitch_mm
-    return float(np.sqrt(np.mean(rate**2)))
+    strain = (wave(u_mm + pitch_mm / 2) - wave(u_mm - pitch_mm / 2)) / pitch_mm
+    return float(np.sqrt(np.mean(np.gradient(strain, u_mm) ** 2)))
 
 
 class Wave(NamedTuple):
