@@ -12,7 +12,6 @@ import vbraille.live
 from tests.live.showing import LINES, Reading, comes, settled, until
 from tests.tiers import heavy
 from vbraille.live.messages import (
-    BesideShown,
     CardShown,
     LetGo,
     PagePress,
@@ -31,9 +30,9 @@ from vbraille.render.braille.models import SWING_MM
 
 MOMENTS = [
     PlayedEvent(0.0, "line", "line 1"),
-    PlayedEvent(2.4, "trial", "trial 12", None, "2.6 mm"),
-    PlayedEvent(7.85, "answer", "answer: n", True, "2.6 mm"),
-    PlayedEvent(16.4, "answer", "answer: m", False, "2.2 mm"),
+    PlayedEvent(2.4, "trial", "trial 12"),
+    PlayedEvent(7.85, "answer", "answer: n", True),
+    PlayedEvent(16.4, "answer", "answer: m", False),
     PlayedEvent(28.3, "fault", "the device was silent"),
 ]
 LENGTH_S = 42.0
@@ -122,7 +121,6 @@ def test_axe_finds_nothing_in_a_reading(opens, reading, scheme):
         reading.state,
         lines=[],
         scene=SceneShown("A house", "A house with a door.", 90, 60, png),
-        beside=BesideShown("sheared", reading.state.rows_shown, 0, 0.1, ["AAAA"] * 6),
         signals=[SignalShown("door", "1 open, 0 shut")],
         cards=[[CardShown("row 1, card 1", "face down"), CardShown("row 1, card 2", "turned up")]],
     )
@@ -325,10 +323,6 @@ def test_a_recording_is_played_stepped_through_and_gone_through_by_its_events(op
         until(page, "vbraille.last.time_s > 0.2")
         press("Pause")
         assert "nothing can be turned" in text(page, "#knobs-note")
-        page.locator("#paint").select_option("condition")
-        assert "2.2 mm" in text(page, "#transport .legend")
-        press("Zoom in")
-        assert float(page.locator("#scrubber").get_attribute("max")) == 21
         shapes = page.locator(".moment path").evaluate_all(
             "all => all.map((one) => one.getAttribute('d'))"
         )

@@ -180,29 +180,6 @@ class SceneShown(msgspec.Struct, frozen=True):
     top_mm: float = 0.0
 
 
-class BesideShown(msgspec.Struct, frozen=True):
-    """The line under the hand in another mapping.
-
-    Parameters
-    ----------
-    mapping
-        Words for the mapping.
-    rows_shown
-        Rows of dots that it shows, as in `ViewState`.
-    first_mm, step_mm
-        First of the places, and the distance from each to the next.
-    rows
-        For each row of actuators its deflections at these places, in base64: a byte each, 0 for
-        rest and 255 for full swing. All actuators of a row do the same at one place.
-    """
-
-    mapping: str
-    rows_shown: list[tuple[int, int]]
-    first_mm: float
-    step_mm: float
-    rows: list[str]
-
-
 class SignalShown(msgspec.Struct, frozen=True):
     """A signal of a picture, with words for 1 and 0; frames have its value at its place."""
 
@@ -248,15 +225,12 @@ class PlayedEvent(msgspec.Struct, frozen=True):
         Sentence on what happened.
     right
         Whether an answer was right; None where nothing is right or wrong.
-    condition
-        Condition of its trial; empty for none.
     """
 
     at_s: float
     kind: str
     text: str
     right: bool | None = None
-    condition: str = ""
 
 
 class Welcome(msgspec.Struct, frozen=True, tag_field="tell", tag="welcome"):
@@ -318,8 +292,6 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
         Whether reading is over.
     scene
         Tactile picture under the hand; None where lines are read.
-    beside
-        The line under the hand in another mapping, where that was asked for.
     signals
         Signals of the picture under the hand.
     commands
@@ -347,7 +319,6 @@ class ViewState(msgspec.Struct, frozen=True, tag_field="tell", tag="state"):
     blind: bool = False
     done: bool = False
     scene: SceneShown | None = None
-    beside: BesideShown | None = None
     signals: list[SignalShown] = []
     commands: list[CommandShown] = []
     cards: list[list[CardShown]] = []

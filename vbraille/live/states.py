@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import base64
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from vbraille.live.messages import ArrayShown, BesideShown, LineShown
+from vbraille.live.messages import ArrayShown, LineShown
 from vbraille.render.braille.mappings import NONE
 from vbraille.render.braille.models import SWING_MM
 
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
 
 _DISTANCES: Final = ("dot_width_mm", "dot_spacing_mm", "cell_gap_mm", "row_spacing_mm",
                      "line_pitch_mm")  # fmt: skip
-_BESIDE_MM: Final = 0.1  # from one place to the next
 
 
 def array_shown(display: Display) -> ArrayShown:
@@ -55,37 +53,6 @@ def rows_shown(style: BrailleStyle, display: Display) -> list[tuple[int, int]]:
     shown = [(NONE, NONE)] * display.rows
     shown[style.rows_on(display)] = zip(style.mapping.left, style.mapping.right, strict=True)
     return shown
-
-
-def beside_shown(
-    style: BrailleStyle, display: Display, masks: NDArray[np.uint8], words: str
-) -> BesideShown:
-    """Show the cells of a line in another style.
-
-    Parameters
-    ----------
-    style
-        The style, with another mapping than is felt.
-    display
-        The actuators.
-    masks : uint8[cells]
-        Dot masks of the cells under the hand.
-    words
-        Words for the mapping.
-    """
-    pitch_mm = style.geometry.cell_pitch_mm
-    count = int((style.geometry.extent_mm(len(masks)) + 2 * pitch_mm) / _BESIDE_MM)
-    places_mm = _BESIDE_MM * np.arange(count, dtype=np.float64) - pitch_mm
-    # The left column tells its own place then. What it does, all columns do at that place.
-    made = style.render(masks, display).with_anchor(0.0).path(places_mm)[:, :, 0].T
-    rows = np.rint(255 * np.clip(made, 0, 1)).astype(np.uint8)
-    return BesideShown(
-        words,
-        rows_shown(style, display),
-        -pitch_mm,
-        _BESIDE_MM,
-        [base64.b64encode(row.tobytes()).decode() for row in rows],
-    )
 
 
 def cells_shown(

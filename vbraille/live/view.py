@@ -29,7 +29,7 @@ _SAME: Final = ("flags", "line", "part", "late", "tick", "x_mm", "y_mm", "theta_
                 "share")  # fmt: skip
 _MOST_ASKED: Final = 100  # requests that wait to be taken; of more the oldest go
 _BLIND: Final[dict] = {
-    "lines": [], "rows_shown": [], "scene": None, "beside": None, "signals": [],
+    "lines": [], "rows_shown": [], "scene": None, "signals": [],
     "blind": True,
 }  # fmt: skip
 

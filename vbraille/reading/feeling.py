@@ -64,12 +64,6 @@ def mapping(reader: Reader) -> None:
     _tune(reader, mapping_said(chosen), mapping=chosen)
 
 
-@command("in the live view: the next mapping beside it", "|", steers=True)
-def beside(reader: Reader) -> None:
-    reader.beside_mapping = chosen = _after(reader.beside_mapping, [None, *_mappings(reader)])
-    reader.say(f"beside: {'nothing' if chosen is None else mapping_said(chosen)}")
-
-
 def _after(now: Any, found: list[Any]) -> Any:
     """Next of a list, its first after its last."""
     return found[(found.index(now) + 1) % len(found)] if now in found else found[0]

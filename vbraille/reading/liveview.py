@@ -26,7 +26,6 @@ from vbraille.live.messages import (
 )
 from vbraille.live.states import (
     array_shown,
-    beside_shown,
     geometry_shown,
     line_shown,
     rows_shown,
@@ -146,11 +145,6 @@ class LiveOutput(Output):
 
         style, source = reader.style, reader.book.source
         geometry = style.geometry
-        beside = None
-        if reader.beside_mapping is not None:
-            other = style.replace(mapping=reader.beside_mapping)
-            words = mapping_said(other.mapping)
-            beside = beside_shown(other, self._device.display, reader.part.masks, words)
         return {
             "title": source.title or Path(source.name).name,
             "geometry": geometry_shown(geometry),
@@ -165,7 +159,6 @@ class LiveOutput(Output):
                 for knob in KNOBS.values()
             ],
             "mapping": mapping_said(style.mapping),
-            "beside": beside,
         }  # fmt: skip
 
     def _lines(self, reader: Any) -> list[LineShown]:

@@ -90,4 +90,4 @@ class SessionPlayback(Playback):
         right = None
         if event.kind == "answer":
             right = self._replay.protocol.asks.correct(trial, event.data["answer"])
-        return PlayedEvent(event.t_s, kind, f"{trial.name}: {text}", right, trial.condition)
+        return PlayedEvent(event.t_s, kind, f"{trial.name}: {text}", right)

@@ -8,13 +8,11 @@ const LIGHT = {
   ramp: ["#f3eddc", "#acc4bb", "#6796ad", "#305e8a", "#0d1b3c"],
   stretch: "#a8480f",
   press: "#1d5f9e",
-  conditions: ["#1d5f9e", "#a8480f", "#2f7d32", "#7b3fa0", "#7d6200", "#5b564b"],
 };
 const DARK = {
   ramp: ["#33302b", "#3b5667", "#5388a0", "#93c2bd", "#f7f1d8"],
   stretch: "#f0a060",
   press: "#86bdf2",
-  conditions: ["#86bdf2", "#f0a060", "#8fd18f", "#d3a4ee", "#e3cf6b", "#c9c3b5"],
 };
 
 /** Steps between rest and full swing that have a colour of their own. */

@@ -11,7 +11,7 @@ import { Hand } from "./hand.js";
 import { Knobs } from "./knobs.js";
 import { Playback } from "./playback.js";
 import { Sheet } from "./sheet.js";
-import { Beside, Skin } from "./skin.js";
+import { Skin } from "./skin.js";
 import { Telling, tables } from "./telling.js";
 
 const READ_MS = 100; // how often numbers change: people cannot read them faster
@@ -69,7 +69,6 @@ const connection = new Connection(token(), {
 const ask = (request) => connection.ask(request);
 const sheet = new Sheet(byId("sheet"));
 const skin = new Skin();
-const beside = new Beside();
 const telling = new Telling();
 const signals = new Signals();
 const cards = new Cards(ask);
@@ -133,7 +132,6 @@ function show() {
   telling.show(state);
   sheet.show(state);
   skin.show(state);
-  beside.show(state);
   knobs.show(state, steers, whyNot(open));
   hand.show(state, steers);
   signals.show(state);
@@ -141,10 +139,7 @@ function show() {
   if (state.array) playback.tick(state.array.rate_hz);
   write(byId("kind"), playback.on ? "· a recording" : open ? (steers ? "· may steer" : "· watching") : "· not connected");
   write(byId("page-note"), pageNote());
-  if (frame) {
-    skin.move(state, frame);
-    beside.move(frame);
-  }
+  if (frame) skin.move(state, frame);
 }
 
 /** Reason why nothing can be turned here; empty if it can. */
@@ -168,7 +163,6 @@ function draw(now) {
   queue = [];
   sheet.move(state, frame);
   skin.move(state, frame);
-  beside.move(frame);
   hand.see(frame);
   if (playback.on) playback.show();
   drawn += 1;
@@ -208,11 +202,7 @@ byId("again").addEventListener("click", () => {
 const take = () => state && byId("tables").replaceChildren(...tables(state, frame));
 byId("take").addEventListener("click", take);
 byId("words").addEventListener("toggle", take);
-const tellMotion = () => write(byId("manual"), still.matches
-  ? "Motion is reduced, as your system asks: the drawing changes once a second, and when you move the hand or step through a recording."
-  : "“Hold the picture” stops all motion. Where the system asks for less motion, the drawing changes once a second.");
-still.addEventListener("change", () => (tellMotion(), wake()));
-tellMotion();
+still.addEventListener("change", wake);
 connection.begin();
 
 /** For tests: what was drawn and told last. */

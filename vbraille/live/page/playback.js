@@ -1,13 +1,11 @@
 /** Playing a recording back: pause, step, speed, and a timeline of what happened in it. */
 
-import { colours, onScheme } from "./colours.js";
 import { button, byId, clamp, clock, html, svg, write } from "./elements.js";
 
 const SPEEDS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
 const STEP_S = 0.1;
 const INSET_PX = 5; // half of a slider's thumb
 const MOST_LISTED = 2000;
-const LEAST_SHOWN_S = 1; // of the timeline, however far it is zoomed
 const WRONG = "wrong"; // of the choice of kinds
 
 /** A mark for each kind of event: a shape of 10 pixels around 0, 0. */
@@ -23,7 +21,7 @@ const SHAPES = {
 };
 
 const shape = (kind, look = {}) => svg("path", { class: `mark ${kind}`, d: SHAPES[kind] ?? SHAPES.note, ...look });
-const icon = (kind, look) => svg("svg", { viewBox: "-7 -7 14 14", class: "shape", "aria-hidden": "true" }, shape(kind, look));
+const icon = (kind) => svg("svg", { viewBox: "-7 -7 14 14", class: "shape", "aria-hidden": "true" }, shape(kind));
 
 export class Playback {
   on = false;
@@ -31,8 +29,6 @@ export class Playback {
   playing = false;
   wanted = false; // whether a frame is wanted that was not asked for
   #length = 0;
-  #from = 0; // what the timeline shows
-  #span = 0;
   #tick_s = 0.001;
   #then = NaN;
   #moments = [];
@@ -48,16 +44,12 @@ export class Playback {
     this.time = html("output", { class: "time", for: "scrubber" });
     this.speed = select("speed", ...SPEEDS.map((speed) => [speed, `${speed} ×`]));
     this.kinds = select("kinds");
-    this.paint = select("paint", ["", "kind"], ["condition", "condition"]);
-    this.painted = html("label", {}, "colour by ", this.paint);
     this.list = html("ol", { class: "moments", tabindex: 0, "aria-label": "Events of the recording" });
     this.legend = html("p", { class: "legend" });
     this.speed.value = "1";
-    this.paint.addEventListener("change", () => this.#mark());
     this.kinds.addEventListener("change", () => this.#draw());
     this.scrubber.addEventListener("input", () => this.go(Number(this.scrubber.value)));
     this.scrubber.addEventListener("keydown", (event) => this.#key(event));
-    onScheme(() => this.#mark());
     const step = (label, by, words) => button(label, () => this.#step(by()), { "aria-label": words });
     byId("transport").append(
       html("div", { class: "timebar" }, this.marks, this.scrubber, this.legend),
@@ -66,8 +58,7 @@ export class Playback {
         step("+1 tick", () => this.#tick_s, "on by one tick"), step("+0.1 s", () => STEP_S, "on by 0.1 s"),
         html("label", {}, "speed ", this.speed)),
       html("div", { class: "buttons" }, button("Previous event", () => this.#jump(-1)), button("Next event", () => this.#jump(1)),
-        html("label", {}, "of ", this.kinds), this.painted,
-        button("Zoom in", () => this.#zoom(2)), button("Zoom out", () => this.#zoom(0.5))),
+        html("label", {}, "of ", this.kinds)),
       this.list);
     new ResizeObserver(() => this.#mark()).observe(this.marks);
   }
@@ -77,11 +68,11 @@ export class Playback {
     this.on = playback;
     byId("playback").hidden = !playback;
     if (!playback) return;
-    [this.#length, this.#span, this.#from, this.#moments] = [length_s, length_s, 0, moments];
+    [this.#length, this.#moments] = [length_s, moments];
+    this.scrubber.max = String(length_s);
     const options = [["", "all kinds"], ...[...new Set(moments.map(({ kind }) => kind))].map((kind) => [kind, `${kind}s`])];
     if (moments.some(({ right }) => right === false)) options.push([WRONG, "wrong answers"]);
     this.kinds.replaceChildren(...options.map(([value, words]) => html("option", { value }, words)));
-    this.painted.hidden = !moments.some(({ condition }) => condition);
     write(byId("playback-note"), `${clock(length_s)} long, ${moments.length} events`);
     this.#draw();
     this.go(this.at_s);
@@ -114,31 +105,13 @@ export class Playback {
   #mark() {
     const width = this.marks.clientWidth - 2 * INSET_PX;
     if (!this.on || width <= 0) return;
-    const conditions = [...new Set(this.#moments.map(({ condition }) => condition ?? ""))];
-    const palette = colours().conditions;
-    const look = (condition) => (this.paint.value && condition ? { fill: palette[conditions.indexOf(condition) % palette.length] } : {});
-    const within = this.#chosen.filter(({ at_s }) => at_s >= this.#from && at_s <= this.#from + this.#span);
-    this.marks.replaceChildren(...within.slice(0, MOST_LISTED).map(({ at_s, kind, right, condition }) => {
-      const x = INSET_PX + ((at_s - this.#from) / (this.#span || 1)) * width;
-      return shape(right === false ? `${kind} wrong` : kind, { d: SHAPES[kind] ?? SHAPES.note, transform: `translate(${x.toFixed(1)} 8)`, ...look(condition) });
+    const chosen = this.#chosen;
+    this.marks.replaceChildren(...chosen.slice(0, MOST_LISTED).map(({ at_s, kind, right }) => {
+      const x = INSET_PX + (at_s / (this.#length || 1)) * width;
+      return shape(right === false ? `${kind} wrong` : kind, { transform: `translate(${x.toFixed(1)} 8)` });
     }));
-    const key = (kind, words, looks) => html("span", {}, icon(kind, looks), words);
-    const kinds = [...new Set(within.map(({ kind }) => kind))];
-    this.legend.replaceChildren(...kinds.map((kind) => key(kind, `${kind}s`, {})),
-      ...(this.paint.value ? conditions.filter(Boolean).map((condition) => key("tuning", condition, look(condition))) : []));
-  }
-
-  /** Shows less of the timeline, or more, about the time of now. */
-  #zoom(times) {
-    this.#span = clamp(this.#span / times, Math.min(LEAST_SHOWN_S, this.#length), this.#length);
-    this.#look();
-    this.show();
-  }
-
-  /** Has the timeline show the time of now, within the recording. */
-  #look() {
-    this.#from = clamp(this.at_s - this.#span / 2, 0, this.#length - this.#span);
-    this.#mark();
+    const kinds = [...new Set(chosen.map(({ kind }) => kind))];
+    this.legend.replaceChildren(...kinds.map((kind) => html("span", {}, icon(kind), `${kind}s`)));
   }
 
   #toggle() {
@@ -197,8 +170,7 @@ export class Playback {
   show() {
     const words = `${clock(this.at_s)} of ${clock(this.#length)}`;
     write(this.time, words);
-    if (this.at_s < this.#from - 1e-9 || this.at_s > this.#from + this.#span + 1e-9) this.#look();
-    Object.assign(this.scrubber, { min: String(this.#from), max: String(this.#from + this.#span), value: String(this.at_s) });
+    this.scrubber.value = String(this.at_s);
     this.scrubber.setAttribute("aria-valuetext", words);
     const current = this.#listed.findLastIndex((made) => Number(made.dataset.at) <= this.at_s + 1e-9);
     if (current === this.#current) return;

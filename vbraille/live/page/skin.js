@@ -1,6 +1,6 @@
 /**
  * The array enlarged: where each actuator leans and what passes beneath it, and below that how the
- * skin between neighbours is stretched or pressed. A second one shows the line in another mapping.
+ * skin between neighbours is stretched or pressed.
  */
 
 import { DOTS, distances, dotX, dotY, lineUnder, placeOf, rowWords } from "./braille.js";
@@ -43,18 +43,15 @@ export class Skin {
   #leaning = new Canvas(true);
   #strained = new Canvas(true);
 
-  /** The prefix of its elements is "" or "beside-". */
-  constructor(prefix = "") {
-    this.figure = byId(`${prefix}deflection`);
-    this.note = byId(`${prefix}touch-note`);
-    this.heading = `${prefix}touch-heading`;
+  constructor() {
+    this.figure = byId("deflection");
     this.left = svg("svg", { class: "skin" });
     this.right = svg("svg", { class: "skin", "aria-hidden": "true" });
     this.ring = html("div", { class: "chosen", "aria-hidden": "true" });
     this.legend = html("figcaption", { class: "legend" });
     this.key = html("figcaption", { class: "legend" });
     this.figure.append(html("div", { class: "over" }, this.#leaning.element, this.left, this.ring), this.legend);
-    byId(`${prefix}strain`).append(html("div", { class: "over" }, this.#strained.element, this.right), this.key);
+    byId("strain").append(html("div", { class: "over" }, this.#strained.element, this.right), this.key);
     const again = () => {
       this.#made = "";
       if (this.#state) this.show(this.#state);
@@ -116,7 +113,7 @@ export class Skin {
       }, rowWords(state.rows_shown[row]) || `row ${row + 1}`)));
     this.#cells = this.#seats.map(([x, y], n) => svg("g", { role: "gridcell", class: "actuator", tabindex: -1, "data-n": n },
       svg("rect", { class: "hit", x: x - pitch / 2, y: y - row_mm / 2, width: pitch, height: row_mm })));
-    const grid = svg("g", { role: "grid", "aria-labelledby": this.heading });
+    const grid = svg("g", { role: "grid", "aria-labelledby": "touch-heading" });
     for (let row = 0; row < array.rows; row++) {
       const cells = this.#cells.slice(row * array.columns, (row + 1) * array.columns);
       cells.forEach((cell, column) => cell.addEventListener("click", () => this.choose(row, column, true)));
@@ -129,7 +126,7 @@ export class Skin {
   }
 
   #words(array) {
-    write(this.note, `${array.name}: ${array.rows} × ${array.columns} actuators, ${short(array.column_pitch_mm)} mm apart` +
+    write(byId("touch-note"), `${array.name}: ${array.rows} × ${array.columns} actuators, ${short(array.column_pitch_mm)} mm apart` +
       (array.rows > 1 ? ` and ${short(array.row_pitch_mm)} mm from row to row` : ""));
     const bar = svg("svg", { class: "ramp", viewBox: `0 0 ${STEPS + 1} 1`, preserveAspectRatio: "none", "aria-hidden": "true" });
     steps().forEach((colour, n) => bar.append(svg("rect", { x: n, width: 1.02, height: 1, fill: colour })));
@@ -263,36 +260,5 @@ export class Skin {
     if (!to) return;
     event.preventDefault();
     this.choose(clamp(to[0], 0, rows - 1), clamp(to[1], 0, columns - 1), true);
-  }
-}
-
-/** The line under the hand in another mapping, as the array would feel it there. */
-export class Beside {
-  #state = null;
-  #rows = [];
-  #made = "";
-  skin = new Skin("beside-");
-
-  show(state) {
-    const { beside } = state;
-    byId("beside").hidden = !beside;
-    this.#state = beside ? { ...state, rows_shown: beside.rows_shown } : null;
-    if (!beside) return;
-    write(byId("beside-touch-heading"), `Beside it: ${beside.mapping}`);
-    const made = beside.rows.join(" ");
-    if (made !== this.#made) this.#rows = beside.rows.map((row) => Uint8Array.from(atob(row), (letter) => letter.charCodeAt(0)));
-    this.#made = made;
-    this.skin.show(this.#state);
-  }
-
-  move(frame) {
-    if (!this.#state?.array) return;
-    const { array, beside } = this.#state;
-    const deflections = frame.deflections.map((_, n) => {
-      const x = frame.x_mm + ((n % array.columns) - (array.columns - 1) / 2) * array.column_pitch_mm;
-      const row = this.#rows[Math.floor(n / array.columns)];
-      return row ? row[clamp(Math.round((x - beside.first_mm) / beside.step_mm), 0, row.length - 1)] / 255 : 0;
-    });
-    this.skin.move(this.#state, { ...frame, deflections });
   }
 }

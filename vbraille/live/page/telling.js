@@ -32,7 +32,6 @@ export class Telling {
   #rate = NaN;
   #since = [NaN, NaN]; // tick and time from which the rate is measured
   #print = "";
-  #down = [NaN, NaN, NaN]; // time and place from which the speed down the page is measured, and that speed
 
   /** What the state says. */
   show(state) {
@@ -68,12 +67,11 @@ export class Telling {
     const two = state.array?.height_mm > 0;
     const here = state.blind ? null : under(state, frame);
     const on = here && here.cell >= 0;
-    const speed = `${fixed(frame.vx_mm_s, 0)} mm/s`;
     this.#readout.show([
       ["x", `${fixed(frame.x_mm)} mm`],
       ...(two ? [["y", `${fixed(frame.y_mm)} mm`]] : []),
       ...(state.array?.turns ? [["turned", `${degrees(frame.theta_rad)}°`]] : []),
-      ...(two ? [["speed along", speed], ["speed down", `${fixed(this.#falling(frame), 0)} mm/s`]] : [["speed", speed]]),
+      ["speed along", `${fixed(frame.vx_mm_s, 0)} mm/s`],
       ...(state.blind || state.scene ? [] : [
         ["cell", on && String(here.cell + 1)],
         ["dots", on && (here.dots.join(" ") || "none")],
@@ -84,15 +82,6 @@ export class Telling {
     if (state.scene) write(byId("print"), state.scene.description);
     else this.#printed(here);
     this.#time(state, frame);
-  }
-
-  /** Speed down the page, in mm/s: from one reading to the next. */
-  #falling({ time_s, y_mm }) {
-    const [time, y, speed] = this.#down;
-    const passed = time_s - time;
-    if (passed === 0) return speed; // the picture stands still
-    this.#down = [time_s, y_mm, passed > 0 && passed < RATE_S ? (y_mm - y) / passed : NaN];
-    return this.#down[2];
   }
 
   #printed(here) {
