@@ -42,3 +42,11 @@ def test_a_search_is_given_up_by_escape_and_needs_a_text():
         assert reading.type("") == ["cancelled"]
         reading.press("/", "x")
         assert reading.press("pins:LNDN", "button:1") == ["finish typing first"] * 2
+
+
+def test_a_hit_far_ahead_is_said_at_once_and_has_its_number_once_lines_are_counted():
+    text = "\n\n".join(f"paragraph {n}" for n in range(400))
+    with Reading(f"{text} needle", hand="sweep:1") as reading:
+        reading.press("/")
+        assert reading.type("needle")[0].endswith("at 100 percent")
+        reading.until(lambda: reading.press("i")[0].startswith("line 400"))

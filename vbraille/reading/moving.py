@@ -126,7 +126,7 @@ def info(reader: Reader) -> None:
         heading = heading or (block.heading[1] if block.heading else "")
         if (page and heading) or number > _LOOKED_BACK:
             break
-    if not page and reader.has_pages is False:
+    if not page and reader.has_pages is False and reader.is_counted(reader.line):
         page = f"{(reader.layout.number(reader.line) - 1) // LINES_PER_PAGE + 1} in braille"
     said = (
         reader.named,

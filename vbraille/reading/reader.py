@@ -8,7 +8,7 @@ import unicodedata
 from typing import TYPE_CHECKING, Any
 
 from vbraille.braille.cells import dots_of
-from vbraille.errors import InputError
+from vbraille.errors import InputError, VbrailleError
 from vbraille.layout import Layout
 from vbraille.reading.commands import Where
 from vbraille.reading.hand import HELD, HandWatch
@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from vbraille.render import BrailleStyle
     from vbraille.translate import Book
 
-_GATHERED = 20  # blocks at a time, for a search to come
+_GATHERED, _COUNTED = 20, 2  # blocks at a time, for a search to come and for numbers of lines
+_MOST_UNCOUNTED = 50  # blocks that are laid out for the number of a line, which take 0.1 s
 _KEPT_EVERY_S, _WATCHED_EVERY_S = 0.3, 0.5
 _LONGEST_S = 0.25  # from one look to the next, as far as scrolling by time is concerned
 _TRAIL = 100  # places that are kept to go back to
@@ -127,6 +128,7 @@ class Reader(Surface):
         self._found: int | None = None  # place of the last hit or mark that was gone to
         self._ticked_s = self._kept_s = self._watched_s = 0.0
         self._unkept: Line | None = None
+        self._counts = True  # whether lines ahead are still counted
         self._ended = self._figure_due = False  # whether the end was said, and what is to be said
 
     def begin(self) -> None:
@@ -192,8 +194,14 @@ class Reader(Surface):
 
     @property
     def named(self) -> str:
-        """Name of the line in sentences, such as "line 12"."""
-        return f"line {self.layout.number(self.line)}"
+        """Name of the line in sentences: "line 12", or where it is in a text not yet counted."""
+        if self.is_counted(self.line):
+            return f"line {self.layout.number(self.line)}"
+        return f"at {100 * self.book.source.progress(self.line.place):.0f} percent"
+
+    def is_counted(self, line: Line) -> bool:
+        """Tell whether the number of a line is known, or soon found."""
+        return self.layout.uncounted(line) <= _MOST_UNCOUNTED
 
     def has(self, line: Line) -> bool:
         """Tell whether a line is among those that are read."""
@@ -214,7 +222,7 @@ class Reader(Surface):
     def echoed(self, echo: str) -> Iterator[str]:
         """Sentences that are printed of the line: its number, its cells and its text."""
         if echo != "none":
-            yield f"line: {self.layout.number(self.line)}"
+            yield self.named.replace("line ", "line: ")
         yield from super().echoed(echo)
 
     # What is under the hand
@@ -350,9 +358,11 @@ class Reader(Surface):
         if 0 <= self.finger_row < len(self.parts):
             self.enter(self.finger_row)
         if self.rows:
-            first, *others = (self.layout.number(line) for line in self.lines)
-            lines = f"lines {first} to {others[-1]}" if others else f"line {first}"
-            self.say(f"page: {lines}", Cue.PAGE_END)
+            first, *others = self.lines
+            said = self.named
+            if others and self.is_counted(others[-1]):
+                said = f"lines {self.layout.number(first)} to {self.layout.number(others[-1])}"
+            self.say(f"page: {said}", Cue.PAGE_END)
         self._arrive()
         return True
 
@@ -374,6 +384,11 @@ class Reader(Surface):
             if self._cells_due <= 0:
                 self.go_on()
         self.book.source.gather(_GATHERED)
+        if self._counts:
+            try:
+                self._counts = self.layout.count_on(_COUNTED)
+            except VbrailleError:  # which is said once reading comes to it
+                self._counts = False
 
     def keep(self) -> None:
         """Keep the place now."""
@@ -441,7 +456,7 @@ class Reader(Surface):
         layout = Layout(book, self._cells or self.width)
         line, cell = layout.place(place) or (layout.last(), 0)
         assert line is not None, "a book has a line"
-        self.layout = layout
+        self.layout, self._counts = layout, True
         self.show(line, cell, under=under)
 
     def _read_anew(self) -> None:
