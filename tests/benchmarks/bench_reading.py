@@ -83,7 +83,6 @@ def _sentence() -> Result:
 def _frame() -> Result:
     from tests.reading.bench import Heard, NoKeyboard, book_of
     from vbraille.engine.record import Flag
-    from vbraille.layout import cells_per_line
     from vbraille.reading.device import ReadingDevice
     from vbraille.reading.exploration import Exploration
     from vbraille.reading.places import Places
@@ -93,7 +92,7 @@ def _frame() -> Result:
     times = []
     with ReadingDevice("sim", STRESS2.display, hand="slow") as device:
         device.start(STRESS2)
-        width = cells_per_line(STRESS2.style.geometry, STRESS2.display)
+        width = STRESS2.style.geometry.cells_per_line(STRESS2.display.span_mm)
         layout = book_of(Path(TEXT).read_text(encoding="utf-8"), width)
         kept = Places(None, print).book("", Path(), "")
         reader = Reader(layout, device, [Heard()], kept)
