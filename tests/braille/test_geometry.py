@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vbraille.braille.geometry import BOUNDS_MM, PRESETS, STANDARD, STRESS2, VBD, Geometry
+from vbraille.errors import InputError
 
 STRESS2_SPAN_MM = 9 * 1.2
 VBD_SPAN_MM = 11 * 0.7
@@ -94,7 +95,7 @@ class TestWidth:
 
     def test_no_room_for_one(self):
         short = replace(STRESS2, travel_mm=17.0)
-        with pytest.raises(ValueError, match=r"travel of 17 mm .* it must be at least 17\.1 mm"):
+        with pytest.raises(InputError, match=r"travel of 17 mm .* it must be at least 17\.1 mm"):
             short.cells_per_line(STRESS2_SPAN_MM)
         least = replace(STRESS2, travel_mm=10.8 + 2.6 + 3.7)
         assert least.cells_per_line(STRESS2_SPAN_MM) == 1

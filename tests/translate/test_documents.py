@@ -157,6 +157,13 @@ def test_odt_is_read_as_it_is_seen(body, wanted):
     assert said(odt(body, styles), "a.odt") == wanted
 
 
+def test_odt_does_not_repeat_cells_without_end():
+    cell = "<table:table-cell table:number-columns-repeated='999'><text:p>a</text:p></table:table-cell>"
+    row = f"<table:table-row table:number-rows-repeated='999'>{cell}</table:table-row>"
+    source = opened(odt(f"<table:table>{row * 9}</table:table>"), "a.odt")
+    assert 9 <= source.text.count("a") < 30_000
+
+
 # EPUB
 
 NCX = (

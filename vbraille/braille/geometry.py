@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields, replace
 
-from vbraille.errors import check_range
+from vbraille.errors import InputError, check_range
 
 BOUNDS_MM = {
     "dot_width_mm": (0.1, 20.0),
@@ -81,14 +81,14 @@ class Geometry:
 
         Raises
         ------
-        ValueError
+        InputError
             If there is no room for a single cell.
         """
-        room = self.travel_mm - span_mm - self.dot_width_mm - self.dot_spacing_mm
+        least = span_mm + self.dot_width_mm + self.dot_spacing_mm
+        room = self.travel_mm - least
         # 1e-9: a travel given for exactly n cells must not lose one to rounding.
         if room < -1e-9:
-            least = span_mm + self.dot_width_mm + self.dot_spacing_mm
-            raise ValueError(
+            raise InputError(
                 f"a travel of {self.travel_mm:g} mm is too short for one cell; "
                 f"it must be at least {least:g} mm"
             )

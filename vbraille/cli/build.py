@@ -12,7 +12,7 @@ from vbraille.cli.printing import say
 from vbraille.cli.settings import given, save_profile, settings_of, style_options
 from vbraille.errors import InputError
 from vbraille.knobs import KNOBS, profile_values
-from vbraille.layout import Layout, cells_per_line
+from vbraille.layout import Layout
 from vbraille.render import MAPPINGS, single_row
 from vbraille.translate import Book, choose_table, open_source, remarks, table_of
 from vbraille.wording import count
@@ -187,7 +187,7 @@ class Page:
     def __init__(
         self, ctx: click.Context, book: Book, model: Model, width: int | None = None
     ) -> None:
-        width = width or cells_per_line(model.style.geometry, model.display)
+        width = width or model.style.geometry.cells_per_line(model.display.span_mm)
         self.layout, self.model = Layout(book, width), model
         self.first, self.last = ctx.params["lines"]
         self._seen: list[Block] = []

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.braille.cells import UNICODE_BLANK, Cells, mask_of
-from vbraille.errors import InputError
 from vbraille.translate import Block, BlockKind
 
 if TYPE_CHECKING:
@@ -22,8 +21,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from vbraille.braille.geometry import Geometry
-    from vbraille.display import Display
     from vbraille.translate import Book, BrailleTable
 
 _LINES = 1 << 20  # more than a block has
@@ -331,20 +328,6 @@ class Layout:
             before = _RULE[: max(self.width - len(cells), 0)]
         table = self.book.table if block.cells is None else None  # ready cells are cut as they are
         return wrap(block, cells, self.width, indents(block, self.width), table, before)
-
-
-def cells_per_line(geometry: Geometry, display: Display) -> int:
-    """Number of cells that a line has on a display.
-
-    Raises
-    ------
-    InputError
-        If there is no room for a single cell.
-    """
-    try:
-        return geometry.cells_per_line(display.span_mm)
-    except ValueError as error:
-        raise InputError(str(error)) from None
 
 
 def wrap_text(text: str, table: BrailleTable, width: int | None = None) -> list[bytes]:

@@ -13,7 +13,7 @@ import numpy as np
 from vbraille.braille.cells import Cells
 from vbraille.display import check_rate
 from vbraille.errors import InputError
-from vbraille.layout import Layout, cells_per_line
+from vbraille.layout import Layout
 from vbraille.live.states import line_shown
 from vbraille.render.braille.models import STRESS2, Model, check_shown, model_of
 from vbraille.translate import Book, choose_table, text_source
@@ -380,7 +380,7 @@ def _laid_out(
 ) -> tuple[Model, Layout]:
     """Lay a text out in the lines of a display."""
     model = read_as(display, style)
-    width = cells_per_line(model.style.geometry, model.display)
+    width = model.style.geometry.cells_per_line(model.display.span_mm)
     return model, Layout(Book(text_source(text, keep_lines=True), table), width)
 
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from vbraille.engine.engine import EndOfLine
 from vbraille.engine.record import Flag
-from vbraille.layout import cells_per_line
 from vbraille.reading.explored import Explored
 from vbraille.simulation.steering import ReadLine, ReadPage
 
@@ -127,7 +126,7 @@ class Surface(Explored):
         InputError
             If there is no room for a cell.
         """
-        self.width = min(cells_per_line(style.geometry, self.display), MOST_CELLS)
+        self.width = min(style.geometry.cells_per_line(self.display.span_mm), MOST_CELLS)
         pitches = self.display.height_mm / style.geometry.line_pitch_mm - _below_pitches(style)
         self.rows = min(max(0, math.floor(pitches + 1e-9)), MOST_LINES)
         self.style = style

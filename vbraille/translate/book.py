@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections import Counter
+from collections import Counter, defaultdict
 from functools import cache, lru_cache
 from itertools import groupby
 from typing import TYPE_CHECKING
@@ -156,7 +156,7 @@ _WAYS = {
 def remarks(book: Book, blocks: Iterable[Block]) -> list[str]:
     """Sentences on what of some blocks cannot be shown, and on what the table cannot write."""
     unshown: Counter[str] = Counter()
-    written: dict[Kind, Counter[str]] = {kind: Counter() for kind in Kind}
+    written: defaultdict[Kind, Counter[str]] = defaultdict(Counter)
     for block in blocks:
         unshown.update(mark.target for mark in block.marks if mark.kind is MarkKind.UNSHOWN)
         for (kind, part), number in book.otherwise.get(block.number, {}).items():

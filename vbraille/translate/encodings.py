@@ -60,10 +60,8 @@ def decode(content: bytes, encoding: str | None = None) -> tuple[str, str]:
     InputError
         If there is no such encoding.
     """
-    encoding = encoding or next(
-        (name for mark, name in _MARKS.items() if content.startswith(mark)), None
-    )
-    if encoding is not None:
+    marked = (name for mark, name in _MARKS.items() if content.startswith(mark))
+    if encoding := encoding or next(marked, None):
         try:
             return content.decode(encoding, "replace").removeprefix("\ufeff"), ""
         except (LookupError, ValueError):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from vbraille.translate.blocks import Block, BlockKind, MarkKind, cut_marks
-from vbraille.translate.numbering import whole
+from vbraille.translate.numbering import MOST, counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -16,7 +16,6 @@ BETWEEN = "  "  # cells of a row
 # Three unspaced dots 5, as the Braille Authority of North America writes an empty cell.
 EMPTY = Block("⠐⠐⠐")
 EMPHASES = (MarkKind.BOLD, MarkKind.ITALIC, MarkKind.UNDERLINE)
-_MOST = 1_000  # columns up to which a cell may cover several, and rows that one covers
 _LAYING_OUT = (BlockKind.HEADING, BlockKind.QUOTE, BlockKind.LINE, BlockKind.ROW, BlockKind.NOTE)
 
 
@@ -29,7 +28,7 @@ class _Cell(NamedTuple):
 
     def spans(self, what: str) -> int:
         """Number of the columns or rows that it covers, by its attribute."""
-        return min(max(whole(self.element.get(what)), 1), _MOST)
+        return counted(self.element.get(what))
 
 
 def table_blocks(table: Element, read: Callable[[Element], list[Block]]) -> Iterator[Block]:
@@ -102,7 +101,7 @@ def _grid(rows: list[list[_Cell]]) -> list[list[_Cell | None]]:
             while column in lines[number]:
                 column += 1
             spanned = cell.spans("colspan")
-            columns = range(column, column + (spanned if column + spanned <= _MOST else 1))
+            columns = range(column, column + (spanned if column + spanned <= MOST else 1))
             if cell.element.name == "above":  # of a word processor: the cell above goes on
                 cell = lines[number - 1].get(column, cell)
             for line in lines[number : number + cell.spans("rowspan")]:

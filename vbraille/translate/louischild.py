@@ -13,7 +13,6 @@ import sys
 from contextlib import suppress
 from functools import cache
 from itertools import takewhile
-from pathlib import Path
 
 # liblouis's own binding comes with the system; PyPI has another package of that name.
 sys.path.insert(0, "/usr/lib/python3/dist-packages")
@@ -34,7 +33,7 @@ def translate(
 ) -> tuple[bytes, list[int], list[int]]:
     """Dots of a text, for each cell the character that it stands for, and undefined cells."""
     compile_table(f"{table},{more}")
-    limit_processor_time(0.5 + len(text) / 10_000)
+    signal.setitimer(signal.ITIMER_PROF, 0.5 + len(text) / 10_000)
     dots, places, _, _ = louis.translate([table, more], text, forms, mode=louis.dotsIO)
     undefined = [cell for cell, code in enumerate(dots) if ord(code) == UNDEFINED]
     return bytes(ord(code) & 0xFF for code in dots), places, undefined
@@ -43,7 +42,7 @@ def translate(
 @cache
 def compile_table(tables: str) -> None:
     """Have liblouis read a table, which may take long; RuntimeError if there is none."""
-    limit_processor_time(COMPILING_S)
+    signal.setitimer(signal.ITIMER_PROF, COMPILING_S)
     louis.checkTable([tables])
 
 
@@ -51,21 +50,14 @@ def list_tables() -> list[list[str]]:
     """File name of each table that has metadata, and what it says under each of the keys."""
     found = []
     for path in takewhile(lambda path: path is not None, LIBRARY.lou_listTables()):
-        told = [LIBRARY.lou_getTableInfo(path, key) or b"" for key in KEYS]
-        found.append(
-            [Path(path.decode()).name, *(said.decode("utf-8", "replace") for said in told)]
-        )
+        told = (path.rpartition(b"/")[2], *(LIBRARY.lou_getTableInfo(path, key) for key in KEYS))
+        found.append([(said or b"").decode("utf-8", "replace") for said in told])
     return found
 
 
 def display_dots(table: str, characters: str) -> list[int]:
     """Dots that a display table has for characters."""
     return [ord(dots) & 0xFF for dots in louis.charToDots([table], characters)]
-
-
-def limit_processor_time(seconds: float) -> None:
-    """Have the system end this process when it has worked for that long."""
-    signal.setitimer(signal.ITIMER_PROF, seconds)
 
 
 def serve() -> None:
@@ -77,7 +69,7 @@ def serve() -> None:
             answer = globals()[name](*given)
         except (RuntimeError, ValueError) as error:
             answer = RuntimeError(str(error))
-        limit_processor_time(0)
+        signal.setitimer(signal.ITIMER_PROF, 0)
         pickle.dump(answer, sys.stdout.buffer)
         sys.stdout.buffer.flush()
 

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from vbraille.translate.trees import Element
 
 BULLET = "• "
+MOST = 1_000  # columns, rows or blanks that are one
 _BOXES = frozenset("☐☑☒")  # bullets of lists of what is done
 _ROMAN = re.findall(r"([a-z]+)(\d+)", "m1000 cm900 d500 cd400 c100 xc90 l50 xl40 x10 ix9 v5 iv4 i1")
 
@@ -62,6 +63,11 @@ class Level(NamedTuple):
     start: int = 1
     legal: bool = False
     step: int = 1
+
+
+def counted(text: str) -> int:
+    """Number of things that an attribute says, at least one and not more than a book has."""
+    return min(max(whole(text), 1), MOST)
 
 
 @dataclass(slots=True)

@@ -6,7 +6,7 @@ import posixpath
 from typing import TYPE_CHECKING
 
 from vbraille.errors import InputError
-from vbraille.translate.numbering import Level, Numbering, whole
+from vbraille.translate.numbering import Level, Numbering, counted, whole
 from vbraille.translate.office import (
     Document,
     Look,
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from vbraille.translate.source import Source
 
 _NAMES = names("odt")
-_MOST_REPEATED = 1_000  # columns, rows or blanks
+_MOST_COPIES = 20_000  # of rows and cells of tables
 _NUMBERED = ("list-level-style-number", "outline-level-style")
 
 
@@ -55,6 +55,7 @@ class _Odt(Document):
         for part in (self.archive.xml("styles.xml", needed=False), root):
             self._read_styles(part)
         self._boxes = {box.get("id"): box for box in root.iter("checkbox")}
+        self._copies = 0
         for body in root.iter("body"):
             self.inner(body, self.body, self.usual)
         return self.blocks(source, self.archive.xml("meta.xml", needed=False))
@@ -80,7 +81,7 @@ class _Odt(Document):
             case "p" | "h" as name:
                 own = self._styled(element)
                 if name == "h":
-                    own |= heading(max(whole(element.get("outline-level")), 1))
+                    own |= heading(counted(element.get("outline-level")))
                 look = look | own
                 if look.get("hidden"):
                     return
@@ -94,19 +95,21 @@ class _Odt(Document):
                 # So do writers mark a table's head that does not go on at its next page.
                 roles = {self._styled(each).get("role") for each in element.iter("p")}
                 into = into.add("thead") if roles == {"th"} else into
-                for _ in range(_repeated(element, "rows") if element.text.strip() else 1):
+                for _ in range(
+                    self._times(element.get("number-rows-repeated")) if element.text.strip() else 1
+                ):
                     self.inner(element, into.add("tr"), look)
             case "table-cell":
                 columns = element.get("number-columns-spanned")
                 rows = element.get("number-rows-spanned")
-                for _ in range(_repeated(element, "columns")):
+                for _ in range(self._times(element.get("number-columns-repeated"))):
                     self.inner(element, into.add("td", colspan=columns, rowspan=rows), look)
             case "a" | "span":
                 address = element.get("href").removesuffix("|outline")
                 into = into.add("a", href=address) if address else into
                 self.inner(element, into, look | self._styled(element))
             case "s":
-                self.say(into, " " * min(whole(element.get("c")), _MOST_REPEATED), look)
+                self.say(into, " " * counted(element.get("c")), look)
             case "note":
                 key = element.get("id") or f"note-{len(self.bodies)}"
                 self.bodies[key] = next(element.iter("note-body"), element)
@@ -121,6 +124,12 @@ class _Odt(Document):
                 into.add("canvas")
             case name:
                 self.inner(element, into.add("div") if name in self.names["drawn"] else into, look)
+
+    def _times(self, said: str) -> int:
+        """How often a row or a cell stands, as long as a book can have so many."""
+        times = counted(said)
+        self._copies += times - 1
+        return times if self._copies < _MOST_COPIES else 1
 
     def _frame(self, frame: Element, into: Element, look: Look) -> None:
         """Read a picture by its text, a formula, a box by what is in it; mark all else."""
@@ -153,10 +162,6 @@ class _Odt(Document):
             has_marker = item.name == "list-item" and not only_lists
             marker = numbering.marker(at, item.get("start-value")) if has_marker else ""
             self.inner(item, listed.add("li", data_marker=marker), look)
-
-
-def _repeated(element: Element, what: str) -> int:
-    return min(max(whole(element.get(f"number-{what}-repeated")), 1), _MOST_REPEATED)
 
 
 def _level_of(element: Element) -> Level:

@@ -121,10 +121,9 @@ class Document:
 
     def read(self, element: Element, into: Element, look: Look) -> None:
         """Read an element that is one of HTML by another name, or one of the format's own."""
-        name, _, attribute = self.names["html"].get(element.name, "").partition(" ")
-        if name:
-            attributes = {"id": element.get(attribute)} if attribute else {}
-            self.inner(element, into.add(name, **attributes), look)
+        if element.name in self.names["html"]:
+            same = into.add(self.names["html"][element.name], id=element.get("name"))
+            self.inner(element, same, look)
         elif element.name in self.names["texts"]:
             self.say(into, self.names["texts"][element.name], look)
         elif element.name not in self.names["skipped"]:

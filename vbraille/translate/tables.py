@@ -111,7 +111,7 @@ def tables_of(language: str) -> tuple[str, tuple[TableInfo, ...]]:
     )
 
 
-def find_table(language: str = "en", grade: int | None = None) -> str:
+def find_table(language: str, grade: int | None = None) -> str:
     """Name of the table for a language and grade.
 
     Parameters

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -68,18 +69,16 @@ def write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Wri
     how
         What is written for what nothing else can be written for.
     """
-    try:
+    with suppress(UnendingError):
         return _write(table, text, forms, how)
-    except UnendingError:
-        pass
     whole, start, lost = Written(), 0, 0
     for word in re.findall(" |[^ ]+", text):
         try:
-            if lost == _MOST_LOST and word != " ":
+            if lost >= _MOST_LOST and word != " ":
                 raise UnendingError
             part = _write(table, word, forms and forms[start : start + len(word)], how)
         except UnendingError:
-            lost = min(lost + 1, _MOST_LOST)
+            lost += 1
             part = Written(_FULL, [0] * len(_FULL), Counter({(Kind.UNENDING, word): 1}))
         whole.add(part, start)
         start += len(word)

@@ -65,11 +65,7 @@ def test_comments_name_all_kinds_of_question():
 
 REFUSED = {
     "unknown key": (MINI.replace("strings", "stringz"), 6, "strings"),
-    "unknown kind": (MINI.replace('"list"', '"lists"'), 5, "list"),
     "unknown model": (MINI.replace('"vbd"', '"vdb"'), 3, "vbd"),
-    "wrong type": (MINI + "repeats = 'one'\n", 7, "repeats"),
-    "out of range": (MINI + "[display]\ntexture = 2.5\n", 8, "texture"),
-    "no number": (MINI + "[display]\ntexture = nan\n", 8, "texture"),
     "not of the display": (MINI + "[display]\nmapping = 'alternate'\n", 8, "dot_row"),
     "spelling": (MINI.replace('"ca"', '"c1"'), 6, "c1"),
     "too long": (MINI.replace('"ca"', f'"{"ca" * 90}"'), 4, "room"),

@@ -17,13 +17,7 @@ from vbraille.render import (
 )
 from vbraille.sessions.planning.questions import Which
 from vbraille.sessions.simulated.feeling import FeltTrial
-from vbraille.sessions.simulated.observer import (
-    LEAST_FELT,
-    FeltFrames,
-    Observer,
-    reference_per_mm2,
-    smoothing_mm,
-)
+from vbraille.sessions.simulated.observer import LEAST_FELT, FeltFrames, Observer
 from vbraille.simulation.specs import parse_hand
 
 MARGIN_MM = 2.0
@@ -252,13 +246,3 @@ def test_comparing_errs_with_noise_and_knows_what_was_not_felt(rng):
     assert compare(sure, widths[2.0], widths[2.0], "dot_gap_mm", rng) == 1
     none = rest.within(1e6, 2e6)
     assert compare(sure, none, widths[3.0], "dot_width_mm", rng) == 2
-
-
-def test_constants_of_the_skin():
-    # 3 dB down: a wave of 200 Hz / v keeps 1/√2 of its amplitude; 20 µm are added in squares.
-    filtered_mm = np.sqrt(smoothing_mm(100.0) ** 2 - smoothing_mm(0.0) ** 2)
-    assert np.exp(-2 * (np.pi * filtered_mm * 200 / 100) ** 2) == pytest.approx(np.sqrt(0.5))
-    assert smoothing_mm(0.0) == 0.02
-    # Far apart, the contactors of a pair are never on the same dot at once: π / (√2 W p), of
-    # which half of the way over the dot sees the one and half sees the other.
-    assert reference_per_mm2(2.0, 2.0) == pytest.approx(np.pi / (np.sqrt(2) * 4), rel=1e-3)

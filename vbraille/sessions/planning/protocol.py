@@ -16,6 +16,7 @@ from msgspec import Meta
 
 from vbraille.braille.spelling import spell, spell_string, to_braille
 from vbraille.display import Display
+from vbraille.errors import InputError
 from vbraille.render import MODELS, BrailleStyle, Model
 from vbraille.sessions.planning.design import AnyDesign, Compared, values_said
 from vbraille.sessions.planning.items import OrderRow
@@ -484,7 +485,10 @@ class Protocol(ProtocolFile, frozen=True, kw_only=True):
     def room(self, look: Look) -> int:
         """Return how many cells of a string a line has room for."""
         geometry = self.style(look).geometry
-        return geometry.cells_per_line(self.wanted.span_mm) - self.display.lead_cells
+        try:
+            return geometry.cells_per_line(self.wanted.span_mm) - self.display.lead_cells
+        except InputError as error:  # its place in the protocol is told
+            raise ValueError(str(error)) from None
 
     def spelling(self, stimulus: Stimulus) -> Spelling:
         """Return how answers about a stimulus are spelled."""

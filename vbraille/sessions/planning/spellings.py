@@ -18,9 +18,7 @@ def cells_of(text: str, table: str) -> str:
     ValueError
         If the table lacks a character of the text, or writes no dots.
     """
-    masks, unknown = _translated(text, table)
-    if unknown:
-        raise ValueError(f"{text!r} has {unknown!r}, which the table {table} does not know")
+    masks = _masks(text, table)
     if not any(masks):
         raise ValueError(f"{text!r} has no dots in the table {table}")
     return to_braille(masks)
@@ -51,23 +49,17 @@ def parse_text(line: str, text: str, cells: str, table: str) -> str:
         return UNREAD * len(cells)
     if all("⠀" <= character <= "⣿" or character in f"{UNREAD} " for character in typed):
         return "".join(typed.split())
-    return UNREAD.join(_read(part.strip(), table) for part in typed.split(UNREAD))
-
-
-def _read(part: str, table: str) -> str:
-    """Return the cells of a part of an answer, between cells that were not read."""
-    masks, unknown = _translated(part, table) if part else ((), "")
-    if unknown:
-        raise ValueError(f"{part!r} has {unknown!r}, which the table {table} does not know")
-    return to_answer(masks)
+    parts = map(str.strip, typed.split(UNREAD))
+    return UNREAD.join(to_answer(_masks(part, table)) if part else "" for part in parts)
 
 
 @cache
-def _translated(text: str, table: str) -> tuple[tuple[int, ...], str]:
-    """Return the dot masks of a text, and the first character that the table does not know."""
+def _masks(text: str, table: str) -> tuple[int, ...]:
+    """Return the dot masks of a text; ValueError if the table does not know a character of it."""
     # liblouis takes a while to load, and few protocols need it.
     from vbraille.translate import BrailleTable
 
     braille = BrailleTable(table)
-    masks = tuple(braille.translate(text).masks.tolist())
-    return masks, braille.unknown(text)[:1]
+    if unknown := braille.unknown(text):
+        raise ValueError(f"{text!r} has {unknown[0]!r}, which the table {table} does not know")
+    return tuple(braille.translate(text).masks.tolist())

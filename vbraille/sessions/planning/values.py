@@ -22,6 +22,8 @@ Sentence = Annotated[str, Meta(min_length=1, max_length=300)]
 Name = Annotated[str, Meta(pattern="^[a-z0-9-]{1,40}$")]
 Label = Annotated[str, Meta(pattern="^[A-Za-z0-9][A-Za-z0-9_-]{0,31}$")]
 FileName = Annotated[str, Meta(pattern="^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$")]
+# Values of a look that a style has not, or under another name.
+APART = ("table", "on", "scene", "mapping", "dot_row", "texture_cycles", "dot_gap_mm")
 # Numbers of a look that stimuli may differ in.
 Parameter = Literal[
     "texture",
@@ -89,25 +91,23 @@ class Look(Table, frozen=True, kw_only=True):
         ValueError
             If the model has no use for a value, or distances contradict each other.
         """
-        changes = self.given
-        for name in ("table", "on", "scene"):
-            changes.pop(name, None)
         one_row = model.style.mapping.rows == 1
-        if "mapping" in changes and one_row:
+        if self.mapping and one_row:
             raise ValueError(f"mapping: the {model.title} has one row of actuators; give dot_row")
-        if "dot_row" in changes and not one_row:
+        if self.dot_row and not one_row:
             raise ValueError(f"dot_row: the {model.title} has several rows; give mapping")
-        if "texture_cycles" in changes and model.style.profile is Profile.HALF_SINE:
+        if self.texture_cycles and model.style.profile is Profile.HALF_SINE:
             raise ValueError(f"texture_cycles: the texture of the {model.title} is fixed")
-        if "mapping" in changes:
-            changes["mapping"] = MAPPINGS[changes["mapping"]]
-        if "dot_row" in changes:
-            changes["mapping"] = single_row(changes.pop("dot_row"))
-        if "texture_cycles" in changes:
-            changes["cycles"] = changes.pop("texture_cycles")
-        if (gap_mm := changes.pop("dot_gap_mm", None)) is not None:
-            width_mm = changes.get("dot_width_mm", model.style.geometry.dot_width_mm)
-            changes["dot_spacing_mm"] = width_mm + gap_mm
+        changes = {name: value for name, value in self.given.items() if name not in APART}
+        if self.mapping:
+            changes["mapping"] = MAPPINGS[self.mapping]
+        if self.dot_row:
+            changes["mapping"] = single_row(self.dot_row)
+        if self.texture_cycles:
+            changes["cycles"] = self.texture_cycles
+        if self.dot_gap_mm:
+            width_mm = self.dot_width_mm or model.style.geometry.dot_width_mm
+            changes["dot_spacing_mm"] = width_mm + self.dot_gap_mm
         return model.style.replace(**changes)
 
     def changed(self, parameter: str, value: float) -> Look:

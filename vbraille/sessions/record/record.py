@@ -205,15 +205,9 @@ class Record:
 
     @contextmanager
     def _transaction(self) -> Iterator[None]:
-        with told(self.path):
+        with told(self.path), self._db:  # which commits, or rolls back
             self._db.execute("BEGIN IMMEDIATE")
-            try:
-                yield
-                self._db.execute("COMMIT")
-            except BaseException:
-                if self._db.in_transaction:
-                    self._db.execute("ROLLBACK")
-                raise
+            yield
 
 
 class Content(Struct, frozen=True):

@@ -76,8 +76,6 @@ def open_answers(given: Any, conditions: Conditions, progress: Progress) -> Answ
         source = spec if hasattr(spec, "line") else Programmed(spec)
     elif spec == "typed":
         source = Typed()
-    elif spec == "program":
-        raise InputError(f"the answers came from a program; give {setting('answers')} typed")
     elif kind == "simulated":
         from vbraille.sessions.running.reader import Simulated
 

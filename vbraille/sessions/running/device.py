@@ -288,8 +288,7 @@ class SessionDevice(Presenter):
                 self._controls.append(event)
             case Button(pressed=True) if not self.ended:
                 at_s = self.now_s if event.at_ns is None else event.at_ns / 1e9
-                # A press from before the stimulus came is told now, and counts from now on.
-                at_s = at_s if at_s > self._shown_s else self.now_s
+                at_s = max(at_s, self._shown_s)  # of a press that is told late
                 return [Happening("ended", at_s, {"by": f"button:{event.number}"})]
         return []
 

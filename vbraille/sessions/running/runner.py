@@ -27,7 +27,6 @@ from vbraille.sessions.running.markers import Markers
 from vbraille.sessions.running.pins import Pins
 from vbraille.sessions.running.presenter import Happening, Presenter
 from vbraille.signals import Suspension
-from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from vbraille.sessions.running.liveview import SessionView
@@ -175,10 +174,9 @@ class Runner:
         conditions, protocol, answers = self._conditions, self.protocol, self._answers
         self._markers = Markers(conditions.markers, protocol.marker_codes, self.say)
         stack.callback(self._markers.close)
-        versions = {"python": python_version()}
-        versions |= {name: version(name) for name in ("vbraille", "numpy")}
+        versions = {name: version(name) for name in ("vbraille", "numpy")}
+        self._told["versions"] = versions | {"python": python_version()}
         self._told |= {"answers": answers.name, "conditions": structs.asdict(conditions)}
-        self._told |= {"versions": versions}
         if monitor is not None:
             from vbraille.sessions.running.liveview import SessionView  # few sessions have one
 
@@ -200,9 +198,6 @@ class Runner:
         self.device.start()
         if self._pins is not None:
             self._pins.start()
-        if answers.felt and protocol.shows_pictures and conditions.hand == "slow":
-            hint = f"{setting('hand')} sweep:150 does"
-            self.say(f"hand: a slow one comes to few pictures in their time; {hint}")
         self._play = open_sound(conditions.sound, answers, self.say)
 
     def _go_through(self) -> tuple[str, ...]:
