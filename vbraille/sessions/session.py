@@ -180,6 +180,7 @@ class Session:
                     back = "times of day go back in the record, t_s does not"
                     say(f"clock: set back since the last run; {back}")
             Runner(opened, progress, conditions, source, say).run(monitor, before_rest)
+            opened.write_ticks()
             say(f"record: {opened.sum.hex()}")
         return self
 
