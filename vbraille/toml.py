@@ -277,33 +277,25 @@ def _known_keys(kind: type, path: Path, tree: Any) -> list[str]:
 
 def _known_values(kind: type, path: Path) -> list[Any]:
     """Return the values that a key may have, or the kinds that a table may be of."""
-    values: list[Any] = []
-    for each in _types_at(kind, path):
-        values += each.values if isinstance(each, inspect.LiteralType) else []
-    tables = [each for each in _types_at(kind, path[:-1]) if isinstance(each, inspect.StructType)]
-    return values or [each.tag for each in tables]
+    values = [value for each in _types_at(kind, path) for value in getattr(each, "values", ())]
+    return values or [getattr(each, "tag", None) for each in _types_at(kind, path[:-1])]
 
 
 def _types_at(kind: type, path: Path) -> list[inspect.Type]:
     """Return the types that the value at a path may have, members of unions each by itself."""
-    types = [inspect.type_info(kind)]
-    for step in (*path, None):
-        types = [
-            member
-            for each in types
-            for member in (each.types if isinstance(each, inspect.UnionType) else (each,))
-        ]
-        if step is None:
-            break
+    types = _members(inspect.type_info(kind))
+    for step in path:
         below: list[inspect.Type] = []
         for each in types:
-            if isinstance(each, inspect.StructType) and each.array_like:
-                below.append(each.fields[int(step)].type)
-            elif isinstance(each, inspect.StructType):
+            if isinstance(each, inspect.StructType):
                 below += [field.type for field in each.fields if field.encode_name == step]
             elif isinstance(each, inspect.DictType):
                 below.append(each.value_type)
             elif isinstance(each, inspect.CollectionType):
                 below.append(each.item_type)
-        types = below
+        types = [member for each in below for member in _members(each)]
     return types
+
+
+def _members(kind: inspect.Type) -> list[inspect.Type]:
+    return [*kind.types] if isinstance(kind, inspect.UnionType) else [kind]

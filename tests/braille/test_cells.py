@@ -12,14 +12,6 @@ from vbraille.translate import Cells
 
 SIX_DOTS = bytes(range(64))
 ALL = bytes(range(256))
-# Written out once more, from the standard: the letters a to z with their dots.
-LETTERS = {
-    "A": "1", "B": "1-2", "C": "1-4", "D": "1-4-5", "E": "1-5", "F": "1-2-4", "G": "1-2-4-5",
-    "H": "1-2-5", "I": "2-4", "J": "2-4-5", "K": "1-3", "L": "1-2-3", "M": "1-3-4",
-    "N": "1-3-4-5", "O": "1-3-5", "P": "1-2-3-4", "Q": "1-2-3-4-5", "R": "1-2-3-5",
-    "S": "2-3-4", "T": "2-3-4-5", "U": "1-3-6", "V": "1-2-3-6", "W": "2-4-5-6",
-    "X": "1-3-4-6", "Y": "1-3-4-5-6", "Z": "1-3-5-6",
-}  # fmt: skip
 
 
 def bare(masks) -> Cells:
@@ -45,11 +37,6 @@ class TestSpellings:
     def test_brf_is_the_north_american_table(self):
         table = " A1B'K2L@CIF/MSP\"E3H9O6R^DJG>NTQ,*5<-U8V.%[$+X!&;:4\\0Z7(_?W]#Y)="
         assert bare(SIX_DOTS).to_brf() == table
-
-    def test_letters(self):
-        for letter, dots in LETTERS.items():
-            cells = Cells.from_brf(letter.lower())
-            assert (cells.to_brf(), cells.to_dots()) == (letter, dots)
 
     def test_brf_in_lower_case_is_the_same(self):
         lower = "".join(chr(ord(c) + 32) if ord(c) >= 0x40 else c for c in bare(SIX_DOTS).to_brf())

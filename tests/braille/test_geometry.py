@@ -72,15 +72,6 @@ class TestWidth:
         assert STRESS2.cells_per_line(STRESS2_SPAN_MM) == 26
         assert VBD.cells_per_line(VBD_SPAN_MM) == 28
 
-    @pytest.mark.parametrize("travel_mm", [50.0, 123.4, 200.0, 300.0, 1_000.0])
-    @pytest.mark.parametrize("preset", PRESETS.values())
-    def test_the_formula(self, preset, travel_mm):
-        s = STRESS2_SPAN_MM
-        geometry = replace(preset, travel_mm=travel_mm)
-        room = travel_mm - s - preset.dot_width_mm - preset.dot_spacing_mm
-        pitch = preset.dot_spacing_mm + preset.cell_gap_mm
-        assert geometry.cells_per_line(s) == 1 + int(room // pitch)
-
     @given(geometries, st.floats(0.0, 20.0))
     def test_the_array_crosses_all_cells_and_there_is_no_room_for_one_more(self, geometry, span_mm):
         cells = geometry.cells_per_line(span_mm)

@@ -14,7 +14,7 @@ import vbraille.translate
 from tests.cli import program
 from tests.commandline import commands
 from vbraille.cli import options
-from vbraille.cli.app import HELP, app
+from vbraille.cli.app import HELP
 
 
 def all_options():
@@ -212,9 +212,3 @@ def test_shells_complete(shell, line, offered):
         check=False, timeout=60,
     )  # fmt: skip
     assert offered in done.stdout.replace(":", "\n").split(), done.stderr
-
-
-def test_the_group_knows_each_command_once():
-    context = click.Context(app)
-    assert app.list_commands(context) == list(HELP)
-    assert app.get_command(context, "nosuch") is None

@@ -1,16 +1,12 @@
 """``vbraille page``: the formats, ranges of lines, and its output in hostile surroundings."""
 
 import os
-import subprocess
-from pathlib import Path
 
 import pytest
 
 from tests.cli import program
-from vbraille import __version__
 from vbraille.braille.spelling import spell
-from vbraille.layout import Layout
-from vbraille.translate import Book, BrailleTable, Cells, open_source
+from vbraille.translate import Cells
 
 UNICODE = """\
 ⠀⠀⠐⠕⠀⠞⠺⠕⠀⠹⠗⠑⠑
@@ -35,15 +31,6 @@ def test_the_formats_say_the_same(call, text):
         masks = Cells.from_unicode(line).masks.tolist()
         assert Cells.from_brf(brf_line).masks.tolist() == masks
         assert list(spell(dots_line, {})) == masks
-
-
-def test_a_long_text_is_all_there(call, texts):
-    book = Book(open_source(str(texts / "english.txt")), BrailleTable("en-ueb-g2.ctb"))
-    lines = list(Layout(book, 26).lines())
-    said = call("page", texts / "english.txt")
-    assert said.out.splitlines() == [Cells.bare(line.masks).to_unicode() for line in lines]
-    said = call("page", texts / "english.txt", "--format", "text")
-    assert said.out.splitlines() == [line.text for line in lines]
 
 
 @pytest.mark.no_cover
@@ -203,15 +190,6 @@ def test_a_brf_file_is_read_as_it_is(call, tmp_path):
     assert "dots 7-8; give --format unicode" in said.err
 
 
-def test_help_and_version_end_well(call):
-    said = call("--help")
-    assert said.code == 0
-    for command in ("read", "page", "render", "plot", "tables"):
-        assert f"  {command} " in said.out
-        assert call(command, "--help").code == 0
-    assert call("--version").out == f"vbraille {__version__}\n"
-
-
 @pytest.mark.parametrize(
     "surroundings",
     [
@@ -246,16 +224,3 @@ def test_a_reader_who_has_enough_ends_it_quietly(tmp_path):
 def test_a_pipe_is_read_like_a_file(text):
     done = program.run("page", "/dev/stdin", stdin=None, input=text.read_text())
     assert (done.returncode, done.stdout) == (0, UNICODE)
-
-
-@pytest.mark.parametrize("arguments", ["page {}", "--help"])
-@pytest.mark.new_processes
-def test_a_full_disk_under_the_output(text, arguments):
-    with Path("/dev/full").open("wb") as full:
-        done = program.run(
-            *arguments.format(text).split(),
-            capture_output=False, stdout=full, stderr=subprocess.PIPE,
-        )  # fmt: skip
-    assert done.returncode == 1
-    assert done.stderr.splitlines()[-1] == "vbraille: No space left on device"
-    assert "Traceback" not in done.stderr

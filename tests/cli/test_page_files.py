@@ -1,13 +1,11 @@
 """``vbraille page`` for embossers: files whole or not at all, BRF and PEF."""
 
-import subprocess
 from pathlib import Path
 
 import pytest
 from lxml import etree
 
 from tests.cli import program
-from tests.tiers import heavy
 
 SAMPLES = Path(__file__).parents[1] / "translate/braillefiles/samples"
 SCHEMA = SAMPLES / "pef-2008-1-full.rng"
@@ -64,7 +62,6 @@ def test_lines_without_pages(call, text, tmp_path):
             ("--format", "brf", "--out", "no/such/dir"),
             "there is no directory no/such; make it",
         ),
-        (("--format", "brf", "--language", "ja"), "eight dots and BRF has six"),
     ],
 )
 def test_what_cannot_be_is_one_sentence(call, text, options, wanted):
@@ -105,14 +102,3 @@ def test_a_dialect_by_its_table(call, tmp_path):
         2,
         f"vbraille: there is no file {tmp_path / 'no.brf'}; check the name\n",
     )
-
-
-@heavy  # a process of its own, for what no call shows: the disk's end
-def test_a_full_disk_under_the_page(text):
-    with Path("/dev/full").open("wb") as full:
-        done = program.run(
-            "page", text, "--format", "pef",
-            capture_output=False, stdout=full, stderr=subprocess.PIPE,
-        )  # fmt: skip
-    assert done.returncode == 1
-    assert done.stderr.splitlines()[-1] == "vbraille: No space left on device"

@@ -55,6 +55,13 @@ def test_each_setting_is_printed_with_its_origin(call, settings, monkeypatch):
     assert call("settings", "--where", "--settings", settings).out == f"{settings}\n"
 
 
+def test_a_command_has_a_profile_of_its_own(call, settings):
+    settings.write_text(f'{TEXT}[read]\nprofile = "evening"\n')
+    found = rows(call("settings", "--settings", settings, "--json"))
+    assert found["profile"] == ("evening", "mine.toml line 14")
+    assert found["texture"] == (0.5, "mine.toml line 9, profile evening")
+
+
 def rendered(call, out, text, *options):
     done = call("render", text, "--out", out, "--force", "--lines", "1", *options)
     assert done.code == 0, done.err

@@ -43,7 +43,7 @@ Floats = NDArray[np.float64]
 Observer = Callable[..., Floats]
 Stimulus = tuple[float, ...]
 
-TAILS = (0.025, 0.5, 0.975)
+TAILS = (0.025, 0.975)
 TIE = 1e-9  # stimuli as good as that are equal, so that the last bit of a machine chooses none
 UNLIKELY = 1e-15  # no answer makes a value impossible
 MOST_CELLS = 4_000_000  # of a table, which has 32 MB then
@@ -89,10 +89,9 @@ def nearer(first: Floats, second: Floats, centre: Floats, spread: Floats, lapse:
 
 
 class Estimate(NamedTuple):
-    """Mean, median and standard deviation of a posterior, and its interval of 95 %."""
+    """Mean and standard deviation of a posterior, and its interval of 95 %."""
 
     mean: float
-    median: float
     sd: float
     low: float
     high: float
@@ -159,8 +158,8 @@ class Grid:
     def estimate(self, name: str, log_likelihood: Floats) -> Estimate:
         """Estimate a parameter by its posterior.
 
-        Median and interval are interpolated: the probability of a value is spread evenly over the
-        half ways to its neighbours.
+        The interval is interpolated: the probability of a value is spread evenly over the half ways
+        to its neighbours.
         """
         others = tuple(n for n, other in enumerate(self.axes) if other != name)
         shares = posterior(log_likelihood).sum(axis=others)
@@ -168,8 +167,8 @@ class Grid:
         mean = float(at @ shares)
         sd = float(np.sqrt((at - mean) ** 2 @ shares))
         edges = np.concatenate((at[:1], (at[1:] + at[:-1]) / 2, at[-1:]))
-        low, median, high = np.interp(TAILS, np.append(0, np.cumsum(shares)), edges).tolist()
-        return Estimate(mean, median, sd, low, high)
+        low, high = np.interp(TAILS, np.append(0, np.cumsum(shares)), edges).tolist()
+        return Estimate(mean, sd, low, high)
 
 
 def posterior(log_likelihood: Floats) -> Floats:

@@ -89,7 +89,9 @@ class Group(click.Group):
         """Names of the actions."""
         return list(self.commands)
 
-    def action(self, example: str, *options: Callable, name: str | None = None) -> Callable:
+    def action(
+        self, example: str, *options: Callable, name: str | None = None
+    ) -> Callable[[Callable], click.Command]:
         """Make the decorator of an action, as `command` does."""
         return command(example, *options, group=self, name=name)
 
@@ -237,7 +239,7 @@ def option(*names: str, **how: Any) -> Callable:
 
 def command(
     example: str, *options: Callable, group: click.Group | None = None, name: str | None = None
-) -> Callable:
+) -> Callable[[Callable], click.Command]:
     """Make the decorator of a command, or of an action of a group.
 
     Parameters

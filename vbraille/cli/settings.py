@@ -104,6 +104,8 @@ class Settings:
 class Context(click.Context):
     """The context of a command, whose options the settings file has where they are not given."""
 
+    shows_all = False  # whether the settings are printed, and no command runs
+
     @cached_property
     def settings(self) -> Settings:
         """The settings file, as ``--settings`` and ``--profile`` choose.
@@ -139,8 +141,9 @@ class Context(click.Context):
 
     def lookup_default(self, name: str, call: bool = True) -> Any:
         """Value of an option in the settings file; None if it has none."""
-        chooses = name in ("settings", "profile", "help_all", "log")
-        if not call or chooses or "settings" not in self.params or self.resilient_parsing:
+        # The profile is chosen before the file is read, unless the file itself is asked about.
+        unread = "settings" not in self.params or (name == "profile" and not self.shows_all)
+        if not call or unread or name in ("help_all", "log") or self.resilient_parsing:
             return None
         value, _ = self.settings.values.get(name, (None, ""))
         return value

@@ -218,24 +218,6 @@ def _signed(cells: Cells, before: bytes, after: bytes) -> Cells:
     return Cells(masks, starts, cells.end)
 
 
-def indents(block: Block, width: int) -> tuple[int, int]:
-    """Numbers of blank cells before a block's first line and before its other lines.
-
-    They are less than half of a line, so that there is room for words: a larger indent of the
-    kind is cut to the largest even number of cells that is.
-
-    Parameters
-    ----------
-    width
-        Number of cells in a line.
-    """
-    first, others = _INDENTS.get(block.kind, (1, 0))
-    depth = 0 if block.kind is BlockKind.HEADING else block.level
-    first = others if block.continues else first
-    most = (width - 1) // (2 * STEP) * STEP
-    return min((first + depth) * STEP, most), min((others + depth) * STEP, most)
-
-
 class Layout:
     """Lines of a book.
 
@@ -326,8 +308,14 @@ class Layout:
             if block.cells is not None or not len(cells):
                 return []  # the page has no number
             before = _RULE[: max(self.width - len(cells), 0)]
+        # Indents are less than half of a line, so that there is room for words.
+        most = (self.width - 1) // (2 * STEP) * STEP
+        first, others = _INDENTS.get(block.kind, (1, 0))
+        first = others if block.continues else first
+        depth = 0 if block.kind is BlockKind.HEADING else block.level
+        indents = min((first + depth) * STEP, most), min((others + depth) * STEP, most)
         table = self.book.table if block.cells is None else None  # ready cells are cut as they are
-        return wrap(block, cells, self.width, indents(block, self.width), table, before)
+        return wrap(block, cells, self.width, indents, table, before)
 
 
 def wrap_text(text: str, table: BrailleTable, width: int | None = None) -> list[bytes]:

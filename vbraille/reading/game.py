@@ -154,10 +154,6 @@ class Game(Explored):
         self.device.put(self._programs[-1 if place is None else self.cards[place]], self._number)
         self.steer()
 
-    def _turn_to(self, place: int, then: str = "") -> None:
-        self._feel(place)
-        self.say(f"{self.name(place)}: feel it{then}")
-
     def steer(self) -> None:
         """Have a simulated hand go over the card that it feels."""
         if self.felt is not None:
@@ -211,8 +207,9 @@ class Game(Explored):
         else:
             self.sides[self.place] = UP
             self.up.append(self.place)
+            self._feel(self.place)
             then = "; o feels the other, enter says whether they match" if self.up[1:] else ""
-            self._turn_to(self.place, then)
+            self.say(f"{self.name(self.place)}: feel it{then}")
 
     def _settle(self) -> None:
         """End a turn: after a match both cards leave, and the player has a point and goes on."""
@@ -245,7 +242,8 @@ class Game(Explored):
         """Feel the other card that is turned up."""
         others = [place for place in self.up if place != self.felt]
         if others:
-            self._turn_to(others[0])
+            self._feel(others[0])
+            self.say(f"{self.name(others[0])}: feel it")
         else:
             self.refuse("no other card is turned up; enter turns one")
 

@@ -16,7 +16,6 @@ from vbraille.names import likeness
 from vbraille.sessions.planning.loading import load_protocol
 from vbraille.sessions.planning.plan import Plan, make_plan
 from vbraille.sessions.planning.protocol import Protocol
-from vbraille.sessions.planning.values import Look
 from vbraille.sessions.record import record, trials
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Content, Record
@@ -181,6 +180,7 @@ class Session:
                     back = "times of day go back in the record, t_s does not"
                     say(f"clock: set back since the last run; {back}")
             Runner(opened, progress, conditions, source, say).run(monitor, before_rest)
+            opened.write_ticks()
             say(f"record: {opened.sum.hex()}")
         return self
 
@@ -203,7 +203,9 @@ def plan_session(
     loaded = protocol if isinstance(protocol, Protocol) else load_protocol(str(protocol))
     seed = secrets.randbelow(_MOST_DRAWN) if seed is None else seed
     if best_from is not None:
-        chosen["look"] = Look(texture=trials.best_level(Path(best_from), "texture"))
+        texture = trials.best_level(Path(best_from), "texture")
+        display = structs.replace(loaded.display, texture=texture)
+        loaded = structs.replace(loaded, display=display)
     plan = make_plan(loaded, participant, seed, session=session or 1, **chosen)
     return loaded.of_group(plan.group), plan
 

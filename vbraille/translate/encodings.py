@@ -100,6 +100,4 @@ def tidy(text: str) -> str:
     >>> tidy("e\u0301te\u0301 Schiff\u00adfahrt \x93x\x94")
     'été Schifffahrt “x”'
     """
-    if text.isascii():
-        return text
     return _ACCENTED.sub(lambda found: unicodedata.normalize("NFC", found[0]), text.translate(_ODD))

@@ -26,10 +26,6 @@ class _Cell(NamedTuple):
     blocks: list[Block]
     whole: Block
 
-    def spans(self, what: str) -> int:
-        """Number of the columns or rows that it covers, by its attribute."""
-        return counted(self.element.get(what))
-
 
 def table_blocks(table: Element, read: Callable[[Element], list[Block]]) -> Iterator[Block]:
     """Rows of a table; or the blocks of its cells, if it only puts them beside each other.
@@ -100,11 +96,11 @@ def _grid(rows: list[list[_Cell]]) -> list[list[_Cell | None]]:
         for cell in row:
             while column in lines[number]:
                 column += 1
-            spanned = cell.spans("colspan")
+            spanned = counted(cell.element.get("colspan"))
             columns = range(column, column + (spanned if column + spanned <= MOST else 1))
             if cell.element.name == "above":  # of a word processor: the cell above goes on
                 cell = lines[number - 1].get(column, cell)
-            for line in lines[number : number + cell.spans("rowspan")]:
+            for line in lines[number : number + counted(cell.element.get("rowspan"))]:
                 line.update(dict.fromkeys(columns, cell))
             column = columns.stop
     # A row that is one cell does not make the table wider.

@@ -91,6 +91,7 @@ class Walker:
     ) -> None:
         self._blocks: list[Block] = []
         self._language, self._member, self._spell = language, member, spell
+        self._prefix = f"{member}#" if member else ""  # of anchors
         self._groups = groups or count(1)
         self._role = _Role()
         self._anchors: list[str] = []
@@ -218,7 +219,7 @@ class Walker:
             self._end()
         identity = element.get("id") or (element.get("name") if name == "a" else "")
         if identity:
-            self._anchors.append(self._anchor(identity))
+            self._anchors.append(self._prefix + identity)
         tag = element.get("lang").strip().replace("_", "-")
         if tag and is_block:
             self._become(language="" if _same(tag, self._language) else tag)
@@ -372,9 +373,6 @@ class Walker:
             address = "#" + inside(self._member, address).removeprefix("#")
         self._marks.append(Mark(kind, start, len(self._text), address))
 
-    def _anchor(self, name: str) -> str:
-        return f"{self._member}#{name}" if self._member else name
-
     def _img(self, element: Element) -> None:
         path = re.split("[?#]", element.get("src"))[0].strip()
         said = _label(element)
@@ -426,7 +424,7 @@ class Walker:
         """A page of print begins."""
         told = _label(element) or " ".join(element.text.split())
         told = re.sub(r"^page ", "", told, flags=re.I).strip(" .")
-        anchors = (self._anchor(element.get("id")),) if element.get("id") else ()
+        anchors = (self._prefix + element.get("id"),) if element.get("id") else ()
         page = Block(told, BlockKind.PAGE, anchors=anchors)
         if self._text:
             self._pages.append(page)

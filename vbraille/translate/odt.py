@@ -126,7 +126,7 @@ class _Odt(Document):
                 self.inner(element, into.add("div") if name in self.names["drawn"] else into, look)
 
     def _times(self, said: str) -> int:
-        """How often a row or a cell stands, as long as a book can have so many."""
+        """Number of times that a row or a cell stands, within what a book can have."""
         times = counted(said)
         self._copies += times - 1
         return times if self._copies < _MOST_COPIES else 1

@@ -4,6 +4,7 @@ import re
 
 from tests.cli.program import Terminal
 from tests.sessions.sittings import MINI, SURE, made
+from vbraille.sessions.record.checking import sum_of
 
 ARGUMENTS = ("--answers", "typed", "--hand", "sweep:200", "--cues", "none")
 
@@ -19,8 +20,9 @@ def test_answers_are_edited_and_commands_typed(tmp_path):
         terminal.type("note the fan is on\n")
         terminal.until(r"note: is in")
         terminal.type("stop\n")
-        terminal.until(r"record: [0-9a-f]{64}")
+        said = terminal.until(r"record: [0-9a-f]{64}")
         assert terminal.end() == 0
+    assert sum_of(sat.session.path) in said
     assert [event.data["answer"] for event in sat.of("answer")] == ["⠁⠉"]
     assert sat.of("note")[0].data["text"] == "the fan is on"
 

@@ -278,25 +278,22 @@ def _typing(
     speech
         Whether all is spoken.
     """
-    with ExitStack() as stack:
-        speak: Callable[[str], object] = bool  # nothing is spoken
-        if speech:
-            from vbraille.reading.outputs import Behind, Speech
+    from vbraille.reading.outputs import Behind, Output, Speech
 
-            spoken = Behind("speech", Speech, _say)
-            stack.callback(spoken.close)
-            speak = spoken.say
+    with ExitStack() as stack:
+        spoken = Behind("speech", Speech, _say) if speech else Output()
+        stack.callback(spoken.close)
 
         def tell(sentence: str) -> None:
             _say(sentence)
-            speak(sentence)
+            spoken.say(sentence)
 
         if answers not in (None, "typed"):
             yield None, tell
         elif sys.stdin is not None and sys.stdin.isatty():
             from vbraille.cli.typing import TypedKeys
 
-            keys = stack.enter_context(TypedKeys(speak))
+            keys = stack.enter_context(TypedKeys(spoken.say))
             yield keys, keys.say
         else:
             from vbraille.sessions.running.answers import Typed

@@ -37,8 +37,9 @@ def command(ctx: click.Context, name: str, model: str | None, where: bool, json:
         raise click.UsageError(f"unknown command {name!r}; vbraille --help lists them", ctx)
     with Context(other, root, name) as inside:
         inside.params |= chosen
+        settings, inside.shows_all = inside.settings, True
+        del inside.params["profile"]
         rows = _rows(inside, model)
-    settings = inside.settings
     there = settings.path.exists()
     lines = [f"settings file: {settings.path}{'' if there else ' (not there)'}"]
     lines.append(f"profile: {settings.profile}")

@@ -18,7 +18,6 @@ from vbraille.sessions.planning.design import Catch, Setting
 from vbraille.sessions.planning.order import Limit, Placed, balanced_orders, ordered
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.trial import BLANK, Trial
-from vbraille.sessions.planning.values import Look
 from vbraille.toml import which
 
 PSEUDONYM = "[A-Za-z0-9][A-Za-z0-9_-]{0,31}"
@@ -60,7 +59,6 @@ def make_plan(
     *,
     session: int = 1,
     group: str | None = None,
-    look: Look | None = None,
 ) -> Plan:
     """Plan a session.
 
@@ -72,8 +70,6 @@ def make_plan(
         Which session of the participant it is, so that a second one has another order.
     group
         Name of the group; None goes by the number in the pseudonym, or by the table of orders.
-    look
-        Values that take the place of the display's own.
 
     Raises
     ------
@@ -81,9 +77,6 @@ def make_plan(
         If no order keeps the rules, or nothing says which balanced order is wanted.
     """
     check_participant(participant)
-    if look is not None:
-        display = structs.replace(protocol.display, **look.given)
-        protocol = structs.replace(protocol, display=display)
     group = _choose_group(protocol, participant, group)
     protocol = protocol.of_group(group)
     order = _choose_order(protocol, participant, order, session)

@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vbraille.braille.cells import dots_of
+from vbraille.braille.cells import mask_of
 from vbraille.braille.spelling import spell_string
 from vbraille.render.program import Program
 from vbraille.sessions.planning.protocol import Protocol
 from vbraille.sessions.planning.trial import Stimulus
 
-LEFT_DOTS = frozenset((1, 2, 3, 7))
+SIDES = mask_of((1, 2, 3, 7)), mask_of((4, 5, 6, 8))
 
 
 class Shown(NamedTuple):
@@ -66,13 +66,12 @@ def edges_mm(protocol: Protocol, stimulus: Stimulus) -> tuple[float, ...]:
     """Return the left edges of the dot columns that a display shows, left to right."""
     style = protocol.style(stimulus.look)
     shown, geometry = style.mapping.shown_dots(), style.geometry
-    edges: list[float] = []
-    for cell, mask in enumerate(stimulus.masks(protocol.display.lead_cells)):
-        dots = set(dots_of(mask & shown))
-        start_mm = cell * geometry.cell_pitch_mm
-        edges += [start_mm] if dots & LEFT_DOTS else []
-        edges += [start_mm + geometry.dot_spacing_mm] if dots - LEFT_DOTS else []
-    return tuple(edges)
+    return tuple(
+        cell * geometry.cell_pitch_mm + side * geometry.dot_spacing_mm
+        for cell, mask in enumerate(stimulus.masks(protocol.display.lead_cells))
+        for side, dots in enumerate(SIDES)
+        if mask & shown & dots
+    )
 
 
 def pins_masks(protocol: Protocol, stimulus: Stimulus | None) -> bytes:

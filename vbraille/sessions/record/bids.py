@@ -60,8 +60,7 @@ def export_bids(paths: Iterable[Path], folder: Path, *, anonymous: bool = False)
         cannot be written. The sessions before it are whole in the dataset.
     """
     written: list[Path] = []
-    contents = [read(path) for path in paths]
-    for content in sorted(contents, key=lambda each: (each.plan.participant, each.path)):
+    for content in [read(path) for path in paths]:
         written += _add(content, folder, anonymous)
     return written
 

@@ -84,12 +84,9 @@ def open_answers(given: Any, conditions: Conditions, progress: Progress) -> Answ
         source = Scripted(Path(spec), progress.script_line)
     else:
         raise InputError(f"there is no file {spec}; give typed, simulated:NOISE or a file")
-    if conditions.fast and isinstance(source, Typed):
-        said = f"{setting('fast')} is for answers that are not typed"
-        raise InputError(f"{said}; give {setting('answers')} simulated")
-    if conditions.fast and not is_simulated(conditions.device):
-        said = f"{setting('fast')} is for the simulated device"
-        raise InputError(f"{said}; leave {setting('device')} out")
+    if conditions.fast and (isinstance(source, Typed) or not is_simulated(conditions.device)):
+        said = "is for the simulated device, and answers that are not typed"
+        raise InputError(f"{setting('fast')} {said}; leave it out")
     return source
 
 

@@ -41,7 +41,7 @@ mean.
 **Comparing.** A dot reaches from the first to the last place at which contactors swing more than
 the one that swings least. Places less than a tenth of W apart belong to one dot. Noise in units
 of the nominal length is added to the width, or to the gap from one dot to the next
-(`vbraille.sessions.running.reader`), and the stimulus that is nearer to the nominal length is
+(`vbraille.sessions.simulated.feeling`), and the stimulus that is nearer to the nominal length is
 chosen.
 """
 
