@@ -278,7 +278,8 @@ def _known_keys(kind: type, path: Path, tree: Any) -> list[str]:
 def _known_values(kind: type, path: Path) -> list[Any]:
     """Return the values that a key may have, or the kinds that a table may be of."""
     values = [value for each in _types_at(kind, path) for value in getattr(each, "values", ())]
-    return values or [getattr(each, "tag", None) for each in _types_at(kind, path[:-1])]
+    tables = [each for each in _types_at(kind, path[:-1]) if isinstance(each, inspect.StructType)]
+    return values or [each.tag for each in tables]
 
 
 def _types_at(kind: type, path: Path) -> list[inspect.Type]:

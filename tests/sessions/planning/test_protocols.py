@@ -88,6 +88,7 @@ REFUSED = {
     "criterion": (
         MINI + "[practice]\nstrings = ['c']\nuntil = { right = 3, of = 2, most = 9 }\n", 9, "of",
     ),
+    "unknown procedure": (MINI + "[procedure]\nkind = 'x'\n", 8, "known: quest, staircase"),
     "procedure": (MINI + "[procedure]\nkind = 'quest'\nspread = [1.0]\n", 7, "parameter"),
 }  # fmt: skip
 

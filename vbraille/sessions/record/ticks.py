@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import sqlite3
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+# What tells how a line was read comes first, so that no more of a blob need be decompressed.
 TICK = np.dtype(
-    [(name, "<i8") for name in ("tick", "time_ns", "device_ns", "line", "part", "flags", "late")]
-    + [(name, "<f8") for name in ("x_mm", "y_mm", "theta_rad", "vx_mm_s", "vy_mm_s")]
-    + [(name, "<f8") for name in ("shown_s", "share")]
+    [("line", "<i8"), ("time_ns", "<i8"), ("x_mm", "<f8"), ("vx_mm_s", "<f8")]
+    + [(name, "<i8") for name in ("tick", "device_ns", "part", "flags", "late")]
+    + [(name, "<f8") for name in ("y_mm", "theta_rad", "vy_mm_s", "shown_s", "share")]
 )
 FIELDS = TICK.names or ()
 
@@ -23,29 +24,37 @@ def pack(ticks: NDArray[np.void]) -> bytes:
     return zlib.compress(np.diff(words, axis=1, prepend=0).tobytes(), 1)
 
 
-def unpack(fields: bytes, count: int) -> NDArray[np.void]:
-    """Return the ticks of a blob, `TICK`[count]."""
-    words = np.frombuffer(zlib.decompress(fields), "<i8").reshape(-1, count).cumsum(axis=1)
-    return np.ascontiguousarray(words.T).view(TICK).reshape(count)
+def unpack(fields: bytes, count: int, names: Sequence[str] = FIELDS) -> NDArray[np.void]:
+    """Return the ticks of a blob, with some of the fields of `TICK`, as an array of [count]."""
+    at = [FIELDS.index(name) for name in names]
+    # One field follows another: what comes after the last that is wanted stays compressed.
+    size = (max(at) + 1) * count * TICK["tick"].itemsize
+    words = np.frombuffer(zlib.decompressobj().decompress(fields, size), "<i8").reshape(-1, count)
+    ticks = np.empty(count, [(name, TICK[name]) for name in names])
+    for name, place in zip(names, at, strict=True):
+        ticks[name] = words[place].cumsum().view(TICK[name])
+    return ticks
 
 
-def read_ticks(db: sqlite3.Connection, line: int) -> NDArray[np.void]:
-    """Return the ticks of a showing, `TICK`[n]."""
+def read_ticks(
+    db: sqlite3.Connection, line: int, names: Sequence[str] = FIELDS
+) -> NDArray[np.void]:
+    """Return the ticks of a showing, with "line" and other fields of `TICK`, as an array of [n]."""
     # Showings are numbered in the order of time, so that the ticks of one stand together.
     query = """
         SELECT fields, count FROM ticks WHERE last_line >= :line AND first_line BETWEEN
             ifnull((SELECT max(first_line) FROM ticks WHERE first_line < :line), 0) AND :line
         ORDER BY after, first
     """
-    ticks = _joined(db.execute(query, {"line": line}))
+    ticks = _joined(db.execute(query, {"line": line}), names)
     return ticks[ticks["line"] == line]
 
 
 def read_all(db: sqlite3.Connection, after: int, before: int) -> NDArray[np.void]:
     """Return the ticks that came after one event and before another, `TICK`[n]."""
     query = "SELECT fields, count FROM ticks WHERE after >= ? AND after < ? ORDER BY after, first"
-    return _joined(db.execute(query, (after, before)))
+    return _joined(db.execute(query, (after, before)), FIELDS)
 
 
-def _joined(blobs: Iterable[tuple[bytes, int]]) -> NDArray[np.void]:
-    return np.concatenate([np.empty(0, TICK), *(unpack(*blob) for blob in blobs)])
+def _joined(blobs: Iterable[tuple[bytes, int]], names: Sequence[str]) -> NDArray[np.void]:
+    return np.concatenate([np.empty(0, TICK)[list(names)], *(unpack(*b, names) for b in blobs)])
