@@ -302,7 +302,8 @@ foreign = _shared("--foreign", type=click.Choice(["switch", "own"]), default="sw
                   help="Passages in another language: switch to its table, or keep the text's own.",
                   **_TEXT)  # fmt: skip
 undefined = _shared("--undefined", type=click.Choice(["mark", "drop"]), default="mark",
-                    help="Characters that the table lacks: a mark, or nothing.", **_TEXT)  # fmt: skip
+                    help="Characters that the table lacks: a mark, or nothing.",
+                    **_TEXT)  # fmt: skip
 keep_lines = _shared("--keep-lines", is_flag=True, help="Keep line breaks, as in verse.", **_TEXT)
 
 # How braille feels
