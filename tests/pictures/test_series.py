@@ -44,15 +44,6 @@ def test_mapping_idles_at_one_where_a_row_is_inverted(method):
         assert (np.ptp(values) > 0.9) == shows_dots
 
 
-def test_mapping_swings_at_the_dots_of_the_letter():
-    # z: dots 1 and 3 left, 5 and 6 right
-    chosen = mapping(STRESS2.style).where("method", "alternate")
-    at = np.searchsorted(chosen["x_mm"], [1.295, 4.995])  # centres: one radius right of the edge
-    raised = [chosen[f"deflection_row_{row}"][at] > 0.99 for row in range(6)]
-    none = [False, False]
-    assert np.array_equal(raised, [[True, False], none, [False, True], none, [True, True], none])
-
-
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
 def test_wave_columns_are_one_curve_shifted_by_the_pitch(model):
     table = wave(with_style(model, tuning=Tuning(texture=0.25)))

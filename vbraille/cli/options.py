@@ -301,9 +301,9 @@ brf_table = _shared("--brf-table", metavar="NAME", help="Display table of a BRF 
 foreign = _shared("--foreign", type=click.Choice(["switch", "own"]), default="switch",
                   help="Passages in another language: switch to its table, or keep the text's own.",
                   **_TEXT)  # fmt: skip
-undefined = _shared("--undefined", type=click.Choice(["mark", "name", "code", "drop"]),
-                    default="mark", help="Characters that the table lacks: a mark, their name, "
-                    "their number, or nothing.", **_TEXT)  # fmt: skip
+undefined = _shared("--undefined", type=click.Choice(["mark", "drop"]), default="mark",
+                    help="Characters that the table lacks: a mark, or nothing.",
+                    **_TEXT)  # fmt: skip
 keep_lines = _shared("--keep-lines", is_flag=True, help="Keep line breaks, as in verse.", **_TEXT)
 
 # How braille feels
