@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 _NAMES = {0: "null", 7: "bell", 8: "backspace", 9: "tab", 10: "line feed", 11: "vertical tab"}
 _NAMES |= {12: "form feed", 13: "carriage return", 27: "escape", 127: "delete"}
 # Settings that a program gives by another name than the command line does.
-_OPTIONS = {"folder": "out", "dialect": "brf-table"}
+_OPTIONS = {"folder": "out"}
 _CONTROLS = {
     code: f"<{_NAMES.get(code) or (f'control {chr(code + 64)}' if code < 32 else f'{code:02x}')}>"
     for code in (*range(0x20), *range(0x7F, 0xA0))

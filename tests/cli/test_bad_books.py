@@ -208,7 +208,6 @@ def test_forms_and_options_that_do_not_fit(call, tmp_path):
     for arguments, said in (
         ((epub_file, "--encoding", "latin-1"), "read as epub, for which there is no --encoding"),
         ((epub_file, "--keep-lines"), "read as epub, for which there is no --keep-lines"),
-        ((text, "--brf-table", "en-us-brf.dis"), "read as text, for which there is no --brf-table"),
         ((text, "--form", "epbu"), "unknown file format 'epbu'; the nearest is epub"),
         ((text, "--form", "epub"), ""),
         ((FILES / "brailleutils.pef", "--table", "fr-bfu-g2.ctb"), "is in braille already; leave"),

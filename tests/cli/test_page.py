@@ -106,8 +106,6 @@ def test_a_table_of_eight_dots_has_no_brf(call, text, choice, instead):
     ("options", "line", "said_of_it"),
     [
         ((), '  HI .<GR9N+ FACE.> "!', "marked in the text;"),
-        (("--undefined", "name"), '  HI .<GR9N+ FACE.> "!', "named in brackets"),
-        (("--undefined", "code"), '  HI .<,U"6#A,F#FJJ.> "!', "numbered in brackets"),
         (("--undefined", "drop"), '  HI  "!', "left out"),
     ],
 )

@@ -88,15 +88,7 @@ def test_a_file_is_replaced_only_by_force_and_whole(call, text, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["book.brf", "eight.brf", "text.txt"]
 
 
-def test_a_dialect_by_its_table(call, tmp_path):
-    book = tmp_path / "buch.brl"
-    book.write_bytes(b"aB~\n")
-    said = call("page", book, "--brf-table", "de-eurobrl6.dis", "--format", "dots")
-    assert said.out == "1 1-2 2-3-4-6\n"
-    assert call("page", book, "--format", "dots").out == "1 1-2 4-5\n"
-    said = call("page", book, "--brf-table", "de-eurobrl7.dis")
-    assert (said.code, said.out) == (2, "")
-    assert "no display table 'de-eurobrl7.dis'" in said.err
+def test_a_book_that_is_not_there(call, tmp_path):
     said = call("page", tmp_path / "no.brf")
     assert (said.code, said.err) == (
         2,

@@ -117,6 +117,7 @@ def test_a_file_that_is_named_must_be_there_and_the_usual_one_need_not(call, tmp
     missing = tmp_path / "none.toml"
     assert "none.toml" in call("settings", "render", "--settings", missing).err
     assert call("settings", "render").code == 0
+    assert call("settings", "render", "--settings", "/dev/null").code == 0
 
 
 def test_a_saved_profile_leaves_all_else_and_is_read_again(call, settings):

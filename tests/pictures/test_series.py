@@ -11,11 +11,6 @@ from tests.pictures.tables import TABLES, make_line, make_page, with_style
 from vbraille.pictures.series import mapping, profile, strain, wave, write_csv
 from vbraille.render import MAPPINGS, MODELS, STRESS2, VBD, Tuning, single_row
 
-
-def peaks(values):
-    return np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] > values[2:])) + 1
-
-
 SIX = [each for each in MAPPINGS.values() if each.rows <= 6]
 
 
@@ -42,15 +37,6 @@ def test_mapping_idles_at_one_where_a_row_is_inverted(method):
         assert values[0] == values[-1] == inverted
         shows_dots = {method.left[row], method.right[row]} != {-1}
         assert (np.ptp(values) > 0.9) == shows_dots
-
-
-def test_mapping_swings_at_the_dots_of_the_letter():
-    # z: dots 1 and 3 left, 5 and 6 right
-    chosen = mapping(STRESS2.style).where("method", "alternate")
-    at = np.searchsorted(chosen["x_mm"], [1.295, 4.995])  # centres: one radius right of the edge
-    raised = [chosen[f"deflection_row_{row}"][at] > 0.99 for row in range(6)]
-    none = [False, False]
-    assert np.array_equal(raised, [[True, False], none, [False, True], none, [True, True], none])
 
 
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)

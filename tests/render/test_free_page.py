@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from tests.render.test_page import frame_of, swing
+from tests.render.braille.reference import SWINGS
+from tests.render.test_page import frame_of
 from vbraille.braille.cells import PLACES
 from vbraille.render import LATERO, STRESS2, STRESS2_8X8, VBD, Straying
 from vbraille.render.braille.style import BAND_BOUNDS, MOST_TILT_RAD
@@ -37,7 +38,9 @@ def lying_under(style, display, lines, x_mm, y_mm, theta):
                     dot_y = middle_mm + (dot_row - 1) * geometry.row_spacing_mm
                     far = math.hypot(x - dot_x, y - dot_y)
                     if far < radius:
-                        felt = swing(style, radius + math.copysign(far, x - dot_x))
+                        felt = style.tuning.contrast * SWINGS[style.profile](
+                            radius + math.copysign(far, x - dot_x), 2 * radius, style.tuning
+                        )
                         out[row, column] = max(out[row, column], felt)
     return out
 

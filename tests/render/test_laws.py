@@ -18,17 +18,12 @@ from tests.render.scenes import (
     scenes,
     scenes_with_places,
 )
-from tests.tiers import heavy
-from vbraille.braille import geometry
 from vbraille.braille.geometry import Geometry
 from vbraille.render import (
     MAPPINGS,
     MODELS,
-    STRESS2,
-    VBD,
     Profile,
     Tuning,
-    single_row,
 )
 
 FLOAT32 = 1e-7  # deflections of at most 1, rounded once
@@ -57,23 +52,6 @@ def test_the_path_kernel_equals_its_twin(drawn):
     frames = scene.renderer().path(x_mm)
     assert frames.dtype == np.float32
     np.testing.assert_allclose(frames, scene.twin(x_mm), rtol=0, atol=1e-6)
-
-
-@pytest.mark.parametrize("texture", [0.0, 0.25, 1.0])
-@pytest.mark.parametrize(
-    ("model", "mapping"),
-    [(VBD, single_row(dot_row)) for dot_row in (1, 2, 3)]
-    + [(STRESS2, mapping) for mapping in MAPPINGS.values() if mapping.rows <= 6],
-    ids=lambda part: part.name,
-)
-def test_kernels_equal_their_twin_on_the_displays_as_they_are(model, mapping, texture, rng):
-    masks = rng.integers(0, 256, 6).astype(np.uint8)
-    scene = models(masks, mapping=mapping, tuning=Tuning(texture=texture))[model.name]
-    start, end = -scene.array.span_mm - 1, scene.geometry.extent_mm(masks.size) + 1
-    x_mm = np.sort(rng.uniform(start, end, 300 if JIT else 60))
-    twin = scene.twin(x_mm)
-    np.testing.assert_allclose(frames_at(scene, x_mm), twin, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(scene.renderer().path(x_mm), twin, rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize("profile", Profile)
@@ -197,23 +175,6 @@ def test_rounding_never_goes_beyond_the_ends_of_the_swing(texture):
                 for x_mm in u_mm:
                     on_the_dot = frame_at(renderer, x_mm)[0, 0]
                     assert 0 <= on_the_dot <= 1
-
-
-@pytest.mark.parametrize("dtype", [pytest.param(np.float32, marks=heavy), np.float64])
-@pytest.mark.parametrize("x_mm", [np.nan, np.inf, -np.inf, 1e308, -1e308, 1e19, -1e19])
-def test_no_place_at_all_gives_the_idle_frame(x_mm, dtype):
-    for profile in Profile:
-        for distances in (geometry.STRESS2, Geometry(6.0, 2.0, 4.5, 3.6, 14.0)):
-            scene = models(
-                np.full(3, 63, np.uint8),
-                profile=profile,
-                mapping=MAPPINGS["row-sheared"],
-                geometry=distances,
-            )["stress2"]
-            with np.errstate(over="ignore"):
-                frame = frame_at(scene.renderer(), x_mm, dtype)
-            expected = np.repeat([[0.0], [0.0], [1.0], [1.0], [0.0], [0.0]], 10, axis=1)
-            np.testing.assert_array_equal(frame, expected)
 
 
 @examples(200)

@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.render.braille.reference import deflections
 from tests.render.scenes import JIT, examples
 from tests.shown import LATERO, part_of
-from vbraille.render import MAPPINGS, STRESS2, VBD, Profile, Straying
+from vbraille.render import MAPPINGS, STRESS2, VBD, Straying
 from vbraille.render.work import NO_PART, ProgramKind
 
 LINES = 25
@@ -35,49 +36,21 @@ def frame_of(program, x_mm, **where):
     return out
 
 
-def swing(style, u_mm):
-    """Deflection over a dot, by eqs. 4.1 to 4.3 or 3.2; u from its left edge."""
-    width, tuning = style.geometry.dot_width_mm, style.tuning
-    if not 0 < u_mm < width:
-        return 0.0
-    if style.profile is Profile.HALF_SINE:
-        assert tuning.texture == 0
-        return tuning.contrast * math.sin(math.pi * u_mm / width)
-    p = 2 * u_mm / width - 1
-    wave = (1 - tuning.texture) * math.cos(math.pi * p)
-    wave += tuning.texture * math.cos(tuning.cycles * math.pi * p)
-    return tuning.contrast * (wave + 1) / 2
-
-
-def felt(style, masks, row, surface_mm):
-    """Deflection of an actuator of a row of the mapping, at a place of the surface."""
-    table = style.mapping.left, style.mapping.right
-    idle = float(style.mapping.inverted[row])
-    best = 0.0
-    for number, mask in enumerate(masks):
-        for side in (0, 1):
-            dot_row = table[side][row]
-            if dot_row >= 0 and mask >> (dot_row + 3 * side) & 1:
-                edge = number * style.geometry.cell_pitch_mm + side * style.geometry.dot_spacing_mm
-                best = max(best, swing(style, surface_mm - edge))
-    return idle + (1 - 2 * idle) * best
-
-
 def turned(style, display, masks, left_mm, theta_rad):
     """The frame of a line under a turned array, each actuator by its own place along x.
 
     ``left_mm`` is where the left column is when the array is not turned; what turns stays at
     the height of the array's centre.
     """
-    out = np.zeros(display.shape)
-    first = (display.rows - style.mapping.rows) // 2
-    for row in range(style.mapping.rows):
-        down_mm = (first + row - (display.rows - 1) / 2) * display.row_pitch_mm
-        for column in range(display.columns):
-            right_mm = column * display.column_pitch_mm
-            x_mm = left_mm + right_mm * math.cos(theta_rad) + down_mm * math.sin(theta_rad)
-            out[first + row, column] = felt(style, masks, row, x_mm)
-    return out
+    right_mm, down_mm = np.meshgrid(
+        display.column_offsets_mm(), display.row_offsets_mm() - display.depth_mm / 2
+    )
+    x_mm = left_mm + right_mm * math.cos(theta_rad) + down_mm * math.sin(theta_rad)
+    rows = [
+        deflections(along_mm, masks, style, display, 0.0)[:, row, 0]
+        for row, along_mm in enumerate(x_mm)
+    ]
+    return np.array(rows)
 
 
 @BOTH

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.render.reader import read_back
-from tests.render.scenes import DOT_PLACES, JIT, cell
+from tests.render.scenes import JIT, cell
 from tests.shown import LATERO, rendered
 from vbraille.braille import geometry
 from vbraille.render import MAPPINGS, STRESS2, VBD, Profile, Tuning, single_row
@@ -91,17 +91,3 @@ def test_another_array_other_distances_and_little_contrast(name, profile, rng):
         tuning=Tuning(texture=0.5, contrast=0.2, cycles=3),
     )
     np.testing.assert_array_equal(read, masks)
-
-
-def test_dots_7_and_8_have_no_row_of_their_own(rng):
-    masks = rng.integers(0, 256, 40).astype(np.uint8)
-    read = told(
-        rng,
-        masks,
-        array=STRESS2.display,
-        profile=STRESS2.style.profile,
-        mapping=STRESS2.style.mapping,
-        geometry=STRESS2.style.geometry,
-        tuning=STRESS2.style.tuning,
-    )
-    np.testing.assert_array_equal(read, masks & cell(*(dot for dot in DOT_PLACES if dot < 7)))

@@ -329,13 +329,6 @@ def test_a_space_in_a_row_of_pef_is_a_blank_cell():
     assert (source.title, len(source.notes())) == ("T", 1)
 
 
-def test_a_dialect_is_read_by_its_table():
-    source = opened(b"aB~\n", "a.brf", brf_table="de-eurobrl6.dis")
-    assert source.block(0).cells.to_dots() == "1 1-2 2-3-4-6"
-    with pytest.raises(InputError, match="no display table"):
-        opened(b"a", "a.brf", brf_table="none.dis")
-
-
 # RTF, without LibreOffice
 
 

@@ -68,7 +68,7 @@ def open_text(chosen: dict[str, Any], wishes: Collection[str] = ()) -> Source:
     InputError
         If it cannot be read.
     """
-    names = ("encoding", "keep_lines", "brf_table", "form")
+    names = ("encoding", "keep_lines", "form")
     how: dict[str, Any] = {"wishes": wishes} | {name: chosen[name] for name in names}
     if chosen["file"] != "-":
         return open_source(chosen["file"], **how)

@@ -296,14 +296,12 @@ table = _shared("--table", metavar="NAME", help="Translation table of liblouis."
 encoding = _shared("--encoding", metavar="NAME", help="Text encoding of the file.", **_TEXT)
 form = _shared("--form", metavar="NAME", help="File format: text, markdown, html, epub, dtbook, "
                "docx, odt, rtf, brf, unicode-braille or pef.", **_TEXT)  # fmt: skip
-brf_table = _shared("--brf-table", metavar="NAME", help="Display table of a BRF file, such as "
-                    "de-eurobrl6.dis.", **_TEXT)  # fmt: skip
 foreign = _shared("--foreign", type=click.Choice(["switch", "own"]), default="switch",
                   help="Passages in another language: switch to its table, or keep the text's own.",
                   **_TEXT)  # fmt: skip
-undefined = _shared("--undefined", type=click.Choice(["mark", "name", "code", "drop"]),
-                    default="mark", help="Characters that the table lacks: a mark, their name, "
-                    "their number, or nothing.", **_TEXT)  # fmt: skip
+undefined = _shared("--undefined", type=click.Choice(["mark", "drop"]), default="mark",
+                    help="Characters that the table lacks: a mark, or nothing.",
+                    **_TEXT)  # fmt: skip
 keep_lines = _shared("--keep-lines", is_flag=True, help="Keep line breaks, as in verse.", **_TEXT)
 
 # How braille feels
@@ -376,7 +374,7 @@ out = option("--out", type=click.Path(), metavar="FILE", help="File to write.")
 force = option("--force", is_flag=True, help="Replace files that exist.")
 workers = option("--workers", type=whole(1, 1024), metavar="N", default=1, help="Processes.")
 
-TRANSLATION = (language, grade, table, encoding, form, brf_table, foreign, undefined, keep_lines)
+TRANSLATION = (language, grade, table, encoding, form, foreign, undefined, keep_lines)
 DISTANCES = (dot_width, dot_spacing, cell_gap, line_pitch, geometry)
 FEEL = (texture, contrast, texture_cycles, *DISTANCES, mapping, dot_row)
 CARRIAGE = (straying, band, travel, height)

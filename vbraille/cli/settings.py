@@ -7,6 +7,7 @@ those of ``[profile.evening]`` for all commands with that profile, and those of
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -156,9 +157,9 @@ def settings_of(ctx: click.Context) -> Settings:
 
 
 def _read(path: str | None) -> Settings:
-    """Read a settings file; the usual one need not be there."""
+    """Read a settings file; the usual one need not be there, and the null device is none."""
     found = settings_path(path)
-    if path is None and not found.exists():
+    if str(found) == os.devnull or (path is None and not found.exists()):
         return Settings(found)
     import tomllib
 

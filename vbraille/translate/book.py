@@ -147,8 +147,6 @@ def _between_signs(own: BrailleTable, part: Written, tag: str, following: str) -
 
 _WAYS = {
     Undefined.MARK: "marked in the text",
-    Undefined.NAME: "named in brackets",
-    Undefined.CODE: "numbered in brackets",
     Undefined.DROP: "left out",
 }
 
@@ -166,7 +164,7 @@ def remarks(book: Book, blocks: Iterable[Block]) -> list[str]:
     if unknown and table is not None:
         said.append(
             f"the table {table.name} does not know {_characters(unknown)}, "
-            f"{_WAYS[table.undefined]}; {setting('undefined')} chooses mark, name, code or drop"
+            f"{_WAYS[table.undefined]}; {setting('undefined')} chooses mark or drop"
         )
     if plain and table is not None:
         said.append(

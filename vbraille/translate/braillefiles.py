@@ -10,7 +10,6 @@ from vbraille.braille.cells import UNICODE_BLANK, Cells
 from vbraille.errors import InputError
 from vbraille.translate.blocks import Block, BlockKind
 from vbraille.translate.encodings import decode
-from vbraille.translate.liblouis import LOUIS
 from vbraille.translate.trees import parse_xml
 from vbraille.wording import count
 
@@ -21,26 +20,19 @@ if TYPE_CHECKING:
 
 # White space of files, and the no-break space that some programs write for a blank cell.
 _BLANKS = str.maketrans("\t\u00a0", "  ")
-_ASCII = "".join(map(chr, range(0x20, 0x7F)))
 PEF_NAMESPACE = "http://www.daisy.org/ns/2008/pef"
 DUBLIN_CORE = "http://purl.org/dc/elements/1.1/"
 
 
-def read_brf(
-    source: Source, encoding: str | None = None, brf_table: str | None = None
-) -> Iterator[Block]:
+def read_brf(source: Source, encoding: str | None = None) -> Iterator[Block]:
     """Read ASCII braille or Unicode braille, with its lines and its pages by form feed."""
     text, _ = decode(source.stream.read(), encoding)
     if not re.search("[!-~⠁-⣿]", text):
         raise InputError(f"{source.name} has no braille in it; give a file of braille")
     source.expected = len(text)
     text = text.rstrip("\x1a\0 \n\r\t").replace("\r\n", "\n").replace("\r", "\n")
-    dialect = {} if brf_table is None else _dialect(brf_table)
     pages = [
-        [
-            line.translate(_BLANKS).rstrip().translate(dialect)
-            for line in sheet.removesuffix("\n").split("\n")
-        ]
+        [line.translate(_BLANKS).rstrip() for line in sheet.removesuffix("\n").split("\n")]
         for sheet in text.rstrip("\f").split("\f")
     ]
     return _blocks(source, pages, "[^ -~⠀-⣿]", numbered="\f" in text)
@@ -65,18 +57,6 @@ def _blocks(
             f"{source.name} has {count(passed.total(), 'character')} that are no braille, passed "
             f"over: {codes}"
         )
-
-
-def _dialect(table: str) -> dict[int, str]:
-    """Cells of each ASCII character by a display table of liblouis; capitals as small letters."""
-    try:
-        masks = dict(zip(_ASCII, LOUIS.ask("display_dots", table, _ASCII), strict=True))
-    except RuntimeError:
-        raise InputError(f"liblouis has no display table {table!r}") from None
-    cells = {sign: masks[sign.lower()] & 0x3F for sign in _ASCII}
-    return {
-        ord(sign): chr(UNICODE_BLANK + mask) for sign, mask in cells.items() if mask or sign == " "
-    }
 
 
 def read_pef(source: Source) -> Iterator[Block]:

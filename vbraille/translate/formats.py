@@ -31,7 +31,7 @@ _READERS = {
     "docx": "docx:read_docx",
     "odt": "odt:read_odt",
     "rtf": "rtf:read_rtf",
-    "brf": "braillefiles:read_brf encoding brf_table",
+    "brf": "braillefiles:read_brf encoding",
     "unicode-braille": "braillefiles:read_brf encoding",
     "pef": "braillefiles:read_pef",
 }
@@ -49,7 +49,6 @@ def open_source(
     form: str | None = None,
     wishes: Collection[str] = (),
     encoding: str | None = None,
-    brf_table: str | None = None,
     keep_lines: bool = False,
 ) -> Source:
     """Open a book of any format that can be read here.
@@ -67,8 +66,6 @@ def open_source(
         use for them.
     encoding
         Text encoding that overrides what the bytes say, for formats that are text.
-    brf_table
-        Display table of liblouis that says which character of a BRF file is which cell.
     keep_lines
         Whether a plain text keeps its own line breaks.
 
@@ -84,7 +81,7 @@ def open_source(
         if found not in _READERS:
             raise InputError(f"unknown file format {form!r}{nearest(found, _READERS)}")
         reader, *takes = _READERS[found].split()
-        given = {"encoding": encoding, "brf_table": brf_table, "keep_lines": keep_lines or None}
+        given = {"encoding": encoding, "keep_lines": keep_lines or None}
         options: dict[str, Any] = {}
         for option, value in given.items():
             if option in takes and value is not None:

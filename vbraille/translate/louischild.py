@@ -55,11 +55,6 @@ def list_tables() -> list[list[str]]:
     return found
 
 
-def display_dots(table: str, characters: str) -> list[int]:
-    """Dots that a display table has for characters."""
-    return [ord(dots) & 0xFF for dots in louis.charToDots([table], characters)]
-
-
 def serve() -> None:
     """Answer questions, each the name of a function and what it is given, until there are none."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the program that asks decides when to end

@@ -23,17 +23,11 @@ class Undefined(StrEnum):
     ----------
     MARK
         A sign for an unknown character; emoji by their names.
-    NAME
-        The name of the character, in brackets.
-    CODE
-        The number of the character, in brackets.
     DROP
         Nothing.
     """
 
     MARK = "mark"
-    NAME = "name"
-    CODE = "code"
     DROP = "drop"
 
 
@@ -96,7 +90,7 @@ def joins(part: str, sign: str) -> bool:
     return len(part) == 1 and all("🇦" <= half <= "🇿" for half in (part, sign))
 
 
-def _in_order(part: str) -> str:
+def in_order(part: str) -> str:
     """The part as tables expect it: shadda before the vowel, Hebrew letters composed."""
     if part in _LEFT_OUT:
         return ""
@@ -109,6 +103,8 @@ def _in_order(part: str) -> str:
 def spellings(part: str, table: str, how: Undefined) -> list[tuple[Kind | None, str]]:
     """Texts that may stand for a letter with its marks, best first; the last is always written.
 
+    None of them is a text that the table writes as a blank, but for a blank.
+
     Parameters
     ----------
     part
@@ -118,19 +114,18 @@ def spellings(part: str, table: str, how: Undefined) -> list[tuple[Kind | None, 
     how
         What is written where nothing else can be.
     """
-    code, named = f"U+{ord(part[0]):04X}", name(part[0], "").lower()
-    # A picture or a symbol that has a name people know.
-    is_emoji = named != "" and category(part[0]) in ("So", "Sk") and part[0] >= "\u2300"
+    # A picture or a symbol, which has a name that people know.
+    is_emoji = category(part[0]) in ("So", "Sk") and part[0] >= "\u2300"
+    named = name(part[0], "").lower() if is_emoji else ""
     as_it_is = [
-        _in_order(part),
+        in_order(part),
         part,
         *([" ", "⠀"] if part.isspace() else []),
         *[""][: _is_invisible(part)],
     ]
     equal = (normalize("NFC", part), normalize("NFD", part))
     dots, plain = _small_forms(part, table)
-    said = {Undefined.CODE: code, Undefined.NAME: named or code}.get(how, named * is_emoji)
-    instead = [""] if how is Undefined.DROP else _bracketed(said) if said else []
+    dropped = [""] if how is Undefined.DROP else []
     markers = [
         text
         for marker in ("[?]", "(?)", "?", FULL_CELLS)
@@ -140,11 +135,13 @@ def spellings(part: str, table: str, how: Undefined) -> list[tuple[Kind | None, 
     for kind, texts in (
         (None, [*as_it_is, *equal, *_compositions(part), *dots]),
         (Kind.PLAIN, [*plain, *_plain_spellings(part), *_bare_letters(part)]),
-        (Kind.NAME if is_emoji and said == named else Kind.MARKED, instead),
+        (Kind.MARKED, dropped),
+        (Kind.NAME, _bracketed(named) if named else []),
         (Kind.MARKED, markers),
     ):
         for text in texts:
-            if part.isspace() or not text.isspace():
+            cells = cells_of(table, text)
+            if part.isspace() or not (text.isspace() or (cells and not any(cells))):
                 found.setdefault(text, kind)
     # Even full cells can be eaten by a rule; they are counted all the same.
     return [*((kind, text) for text, kind in found.items()), (Kind.MARKED, "")]

@@ -16,7 +16,7 @@ import numpy as np
 
 from vbraille.braille.cells import Cells
 from vbraille.translate.liblouis import LOUIS, Answer, UnendingError, cells_of
-from vbraille.translate.spellings import FULL_CELLS, Kind, Undefined, joins, spellings
+from vbraille.translate.spellings import FULL_CELLS, Kind, Undefined, in_order, joins, spellings
 
 _STRANGER = "\ue123"  # no table has it
 _MOST_LOST = 3  # unending words of a passage that are tried, before the rest is given up
@@ -103,7 +103,7 @@ def _write(table: str, text: str, forms: list[int] | None, how: Undefined) -> Wr
         origins: list[int] = []  # character of the text that each of the spelt stands for
         otherwise: Counter[tuple[Kind, str]] = Counter()
         for part, number in zip(parts, tried, strict=True):
-            ways = spellings(part, table, how)
+            ways = spellings(part, table, how) if number else [(None, in_order(part))]
             kind, way = ways[min(number, len(ways) - 1)]
             if kind is not None:
                 otherwise[kind, part] += 1

@@ -10,7 +10,6 @@ from vbraille.braille import geometry
 from vbraille.render import LATERO as LATERO_MODEL
 from vbraille.render import (
     MAPPINGS,
-    MODELS,
     PANTOGRAPH,
     STRESS2,
     STRESS2_8X8,
@@ -21,25 +20,6 @@ from vbraille.render import (
     single_row,
 )
 from vbraille.render.braille.models import same_array
-
-
-def test_models_by_name():
-    named = {
-        "vbd": VBD,
-        "stress2": STRESS2,
-        "stress2-8x8": STRESS2_8X8,
-        "pantograph": PANTOGRAPH,
-        "latero": LATERO_MODEL,
-    }
-    assert named == MODELS
-    titles = {model.title for model in named.values()}
-    assert titles == {
-        "VBD",
-        "STReSS²",
-        "STReSS² 8 × 8",
-        "STReSS² 8 × 8 on the Pantograph",
-        "Latero",
-    }
 
 
 def test_the_pantograph_has_the_same_array_on_a_smaller_surface_and_measures_no_angle():
@@ -98,11 +78,6 @@ def test_the_arrays_of_eight_rows_show_eight_dots(model, pitch_mm, surface_mm, l
     line = model.style.render(np.full(3, 255, np.uint8), display)
     frames = line.path(np.linspace(-12, 30, 200))
     assert np.flatnonzero(np.ptp(frames, axis=(0, 2)) > 0.9).tolist() == [0, 2, 4, 6]
-
-
-@pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
-def test_a_model_fits_its_array(model):
-    assert model.style.mapping.rows == model.display.rows
 
 
 def test_a_known_array_is_a_model_with_the_device_s_own_pitches():

@@ -1,5 +1,3 @@
-from dataclasses import FrozenInstanceError, replace
-
 import pytest
 
 from vbraille.render import Tuning
@@ -24,12 +22,3 @@ def test_texture_cycles_out_of_range(cycles):
     says = rf"^texture cycles are {cycles}; they must be an odd number, 1 to 11$"
     with pytest.raises(ValueError, match=says):
         Tuning(cycles=cycles)
-
-
-def test_a_tuning_changes_only_by_making_another():
-    tuning = Tuning()
-    with pytest.raises(FrozenInstanceError):
-        tuning.texture = 0.5
-    assert replace(tuning, texture=0.5) == Tuning(texture=0.5)
-    with pytest.raises(ValueError, match=r"contrast is 1\.5"):
-        replace(tuning, contrast=1.5)

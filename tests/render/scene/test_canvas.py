@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from vbraille.display import Display
-from vbraille.render.compiling import SceneMap, compile_scene
+from vbraille.render.compiling import SceneMap
 from vbraille.scene.patterns import (
     Circle,
     LinearGrating,
     StraightLine,
     Stroke,
-    UniformVibration,
     Vibration,
 )
 from vbraille.scene.scene import Canvas, Scene
@@ -25,24 +23,6 @@ SCENE = Scene(
         StraightLine(start_mm=(0.0, 0.0), end_mm=(60.0, 40.0), stroke=Stroke(width_mm=2.0)),
     ),
 )
-
-
-def test_a_raster_is_what_one_actuator_feels():
-    dot = Display("one", 1, 1, 1.0, 1.0, height_mm=40.0)
-    program = compile_scene(SCENE, dot)
-    x, y = np.linspace(-3, 63, 45), np.linspace(-2, 42, 31)
-    shown = SceneMap(SCENE).deflections(x, y, time_s=0.004)
-    felt = np.stack([program.poses(x, np.full(x.size, at), 0.0, 0.004)[1] for at in y])
-    assert np.array_equal(shown, felt[:, :, 0, 0])
-
-
-def test_the_other_parity_swings_the_other_way():
-    whole = SceneMap(Scene(canvas=CANVAS, elements=(UniformVibration(frequency_hz=50),)))
-    even, odd = (
-        whole.deflections(np.ones(1), np.ones(1), time_s=0.003, parity=parity) for parity in (0, 1)
-    )
-    assert np.allclose(even + odd, 1.0)
-    assert even > 0.9
 
 
 def test_noise_has_the_range_of_the_vibration():

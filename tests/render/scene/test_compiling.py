@@ -12,7 +12,6 @@ from vbraille.display import Display
 from vbraille.render import kernels, work
 from vbraille.render.compiling import compile_scene
 from vbraille.scene.patterns import (
-    Circle,
     Group,
     LinearGrating,
     StraightLine,
@@ -51,12 +50,6 @@ def actuators(x=50.0, y=40.0, theta=0.0) -> tuple[np.ndarray, np.ndarray]:
     return x + right * cosine + down * sine, y + down * cosine - right * sine
 
 
-def test_a_grating_is_a_cosine():
-    shown = frame(compiled(LinearGrating(ridge_mm=3.0)), 40.3, theta=0.4)
-    x, _ = actuators(40.3, theta=0.4)
-    assert np.allclose(shown, 0.5 - 0.5 * np.cos(2 * np.pi * x / 3), atol=1e-9)
-
-
 def test_the_array_is_turned_as_poses_say():
     grating = LinearGrating(ridge_mm=9.0, wave_angle_deg=90.0)
     shown = frame(compiled(grating), 40.0, 30.0, theta=1.1)
@@ -77,11 +70,6 @@ def test_a_line_hides_what_is_beneath_it():
     across = np.abs(y - 40)
     profile = np.where(across < 1, 1.0, 0.5 + 0.5 * np.cos(np.pi * np.minimum(across - 1, 1)))
     assert np.allclose(shown, profile + 0.25 * (1 - profile), atol=1e-9)
-
-
-def test_a_texture_on_top_hides_everything():
-    below = Circle(center_mm=(50.0, 40.0), radius_mm=5.0, stroke=Stroke())
-    assert np.array_equal(frame(compiled(below, Uniform(level=0.5))), np.full((8, 8), 0.5))
 
 
 def test_a_tile_is_repeated_in_all_directions():

@@ -91,30 +91,6 @@ def test_the_first_dot_stands_at_the_place_of_the_label_whichever_way_it_is_turn
         assert found[0] == pytest.approx(style.tuning.contrast)
 
 
-def test_cells_and_lines_are_as_far_apart_as_on_a_page_and_between_dots_there_is_rest():
-    style = STRESS2_8X8.style.replace(contrast=0.75)
-    geometry = style.geometry
-    # Dot 4 of the second cell, and dot 8 of the first cell of the second line.
-    written = Written((np.array([0, 0b1000], np.uint8), np.array([0b10000000], np.uint8)), style)
-    label = Label(text="x", place_mm=(5.0, 5.0))
-    half_mm = geometry.dot_width_mm / 2
-    right_mm = geometry.dot_spacing_mm
-    x_mm = np.array([geometry.cell_pitch_mm + right_mm, right_mm, 0.0]) + 5.0 + half_mm
-    second_mm = geometry.line_pitch_mm + 3 * geometry.row_spacing_mm
-    y_mm = np.array([0.0, second_mm, 0.0]) + 5.0 + half_mm
-    found, _ = by_kernel(label, written, x_mm, y_mm)
-    np.testing.assert_allclose(found, (0.75, 0.75, 0.0), atol=1e-12)
-    # Away from all dots nothing is up, not even with a mapping that shows dots by going down.
-    everywhere = places_on(label, written, 4000, 1)
-    found, _ = by_kernel(label, written, *everywhere)
-    far = np.min(
-        [np.hypot(everywhere[0] - x, everywhere[1] - y) for x, y in zip(x_mm, y_mm, strict=True)],
-        axis=0,
-    )
-    assert not found[far > half_mm].any()
-    assert found[far < half_mm].any()
-
-
 def test_a_label_hides_what_it_stands_on_as_far_as_its_cells_go():
     style = STRESS2_8X8.style
     written = Written((np.array([0b111, 0], np.uint8),), style)

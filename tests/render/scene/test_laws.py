@@ -3,13 +3,10 @@
 Each frame is the kernel's, and it is compared with the twin's on the way.
 """
 
-import math
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from msgspec.structs import replace
 
 from tests.render.scene import twin as reference
 from tests.render.scene.scenes import KINDS, examples, numbers, patterns, scenes, seeds
@@ -23,20 +20,14 @@ from tests.render.scene.showing import (
     scene_of,
     shown,
 )
-from vbraille.scene.geometry import axial_cycle
 from vbraille.scene.patterns import (
-    AxialGrating,
     Circle,
     Fill,
     Group,
     LinearGrating,
-    PathShape,
-    Polygon,
-    RadialGrating,
-    StraightLine,
     Uniform,
 )
-from vbraille.scene.traversal import moved, with_children
+from vbraille.scene.traversal import moved
 
 EXACT = 1e-6  # frames are of float32
 displays = st.sampled_from(DISPLAYS)
@@ -148,69 +139,6 @@ def test_a_blend_shows_one_part_at_0_and_the_other_at_1(one, other, seed, second
 
 
 # Time and place
-
-
-def regular(pattern):
-    """The pattern with every vibration and movement at a whole number of periods a second."""
-    pattern = with_children(pattern, lambda _, part: regular(part))
-    pattern = replace(pattern, vibration=_whole(pattern.vibration))
-    if isinstance(pattern, LinearGrating | RadialGrating) and pattern.velocity_mm_s:
-        times = math.ceil(abs(pattern.velocity_mm_s) / 10)
-        pattern = replace(pattern, velocity_mm_s=times * (pattern.ridge_mm + pattern.gap_mm))
-    if isinstance(pattern, AxialGrating) and pattern.velocity_deg_s:
-        pattern = replace(pattern, velocity_deg_s=axial_cycle(pattern).length)
-    if hasattr(pattern, "frequency_hz"):
-        pattern = replace(pattern, frequency_hz=float(math.ceil(pattern.frequency_hz)))
-    if isinstance(pattern, StraightLine | Circle | Polygon | PathShape):
-        pattern = _regular_shape(pattern)
-    if isinstance(pattern, Polygon) and pattern.markers is not None:
-        swing = _whole(pattern.markers.vibration)
-        pattern = replace(pattern, markers=replace(pattern.markers, vibration=swing))
-    if hasattr(pattern, "dot"):
-        pattern = replace(pattern, dot=_regular_dot(pattern.dot))
-    return pattern
-
-
-def _whole(swing):
-    if swing is None:
-        return None
-    return replace(swing, frequency_hz=float(math.ceil(swing.frequency_hz)))
-
-
-def _regular_dot(dot):
-    return replace(dot, vibration=_whole(dot.vibration))
-
-
-def _regular_shape(shape):
-    if shape.cue is not None:
-        cue = replace(shape.cue, whole_cycles=False, vibration=_whole(shape.cue.vibration))
-        speed = cue.ridge_mm + cue.gap_mm if cue.velocity_mm_s else 0.0
-        shape = replace(shape, cue=replace(cue, velocity_mm_s=speed))
-    if shape.stroke is not None:
-        stroke = replace(shape.stroke, vibration=_whole(shape.stroke.vibration))
-        if stroke.along is not None:
-            along = stroke.along
-            speed = along.ridge_mm + along.gap_mm if along.velocity_mm_s else 0.0
-            along = replace(along, whole_cycles=False, velocity_mm_s=speed)
-            stroke = replace(stroke, along=along)
-        return replace(shape, stroke=stroke)
-    if shape.dots is not None:
-        swing = _whole(shape.dots.vertex_vibration)
-        dot = _regular_dot(shape.dots.dot)
-        # Each row of dots that moves has a period of its own.
-        dots = replace(shape.dots, dot=dot, vertex_vibration=swing, velocity_mm_s=0.0)
-        return replace(shape, dots=dots)
-    return shape
-
-
-@examples(60)
-@given(st.lists(patterns, min_size=1, max_size=2), seeds)
-def test_a_period_later_it_is_the_same(parts, seed):
-    scene = scene_of(*map(regular, parts), operation="maximum")
-    for pose in some_poses(seed):
-        early = At(pose.x_mm, pose.y_mm, pose.theta_rad, pose.time_s % 10)
-        later = At(pose.x_mm, pose.y_mm, pose.theta_rad, early.time_s + 1)
-        same(shown(scene, STRESS2_8X8_ARRAY, early), shown(scene, STRESS2_8X8_ARRAY, later), 1e-5)
 
 
 @examples(60)

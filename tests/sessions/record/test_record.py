@@ -53,7 +53,10 @@ def test_an_answer_and_its_ticks_are_one_transaction(tmp_path):
     record = Record(sat.session.path)
     ticks = np.zeros(300, TICK)
     ticks["line"], ticks["tick"] = 1, np.arange(300)
-    ticks["x_mm"] = np.random.default_rng(1).normal(0, 9, 300)
+    random = np.random.default_rng(1)
+    ticks["x_mm"] = random.normal(0, 9, 300)
+    ticks["time_ns"] = 10**15 + random.integers(0, 10**9, 300).cumsum()
+    ticks["shown_s"] = random.integers(0, 10**9, 300).cumsum() / 1e9
     record.append("cue", 0.0, trial, 1, stimulus=0, line=1)
     record.add_ticks(ticks[:200])
     record.add_ticks(ticks[200:])

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 _OF_TABLE = ("language", "grade", "table")
 _OF_TEXT = (
-    *_OF_TABLE, "encoding", "form", "brf_table", "foreign", "undefined", "keep_lines",
+    *_OF_TABLE, "encoding", "form", "foreign", "undefined", "keep_lines",
 )  # fmt: skip
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     "structure book.epub",
     options.file, options.json,
     options.encoding(group=options.FIRST), options.form(group=options.FIRST),
-    options.brf_table(group=options.FIRST), options.keep_lines(group=options.FIRST),
+    options.keep_lines(group=options.FIRST),
 )  # fmt: skip
 def command(json: bool, **chosen: Any) -> None:
     """Headings with their pages and percentages, then what else is in the book."""
