@@ -1,13 +1,7 @@
-import doctest
-
 import pytest
 
 from vbraille import names
 from vbraille.errors import InputError
-
-
-def test_the_examples():
-    assert not doctest.testmod(names).failed
 
 
 @pytest.mark.parametrize(

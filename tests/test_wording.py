@@ -1,20 +1,10 @@
-import doctest
 import re
 from pathlib import Path
 
 import pytest
 
 import vbraille
-from vbraille import errors, wording
-from vbraille.braille import cells
 from vbraille.wording import count, printable, setting, spelled
-
-
-@pytest.mark.parametrize("module", [wording, errors, cells], ids=lambda module: module.__name__)
-def test_the_examples(module):
-    failed, attempted = doctest.testmod(module)
-    assert failed == 0
-    assert attempted > 0
 
 
 @pytest.mark.parametrize(

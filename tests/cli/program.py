@@ -15,7 +15,6 @@ from tests.forking import AtTerminal
 PROGRAM = [sys.executable, "-m", "vbraille"]
 PATIENCE_S = 60.0
 CONTRACTED = "Unified English contracted braille, grade 2"
-UNCONTRACTED = "Unified English uncontracted braille, grade 1"
 
 
 def line_width(cells, braille=CONTRACTED):

@@ -64,10 +64,7 @@ def content(rng):
     if kind == 0:
         return rng.bytes(size)
     if kind == 1:
-        mark = pick(
-            rng, [b"\xff\xfe", b"\xfe\xff", b"\xef\xbb\xbf", b"\xff\xfe\0\0", b"\0\0\xfe\xff"]
-        )
-        return mark + rng.bytes(size)
+        return pick(rng, MARKS) + rng.bytes(size)
     if kind == 2:
         return bytes(pick(rng, b"ab \n\r\t-.\x0c\x1b\xad\xa0\x85\0") for _ in range(size))
     encoding = pick(rng, ["utf-8", "utf-8", "utf-16", "utf-32", "utf-16-be"])

@@ -266,14 +266,6 @@ def test_a_killed_run_leaves_the_old_file_and_the_next_run_cleans_up(old, call, 
     assert out.read_bytes() == before  # the same run as before
 
 
-@heavy  # what a signal leaves beside an old file is tested; one handler takes all signals
-def test_a_first_run_that_is_stopped_leaves_nothing(texts, tmp_path):
-    with half_done(texts, tmp_path / "out.h5") as process:
-        process.terminate()
-        assert is_stopped(process)
-    assert files_in(tmp_path) == []
-
-
 def test_a_page_is_rendered_without_a_next_line(call, tmp_path):
     out = tmp_path / "page.h5"
     said = call(

@@ -131,18 +131,6 @@ def test_a_wave_is_as_wide_as_its_shape_whichever_direction_is_named(tmp_path):
     assert list(said.values()) == [True, True, False]
 
 
-def test_the_box_of_a_label_is_that_of_its_dots(tmp_path):
-    path = tmp_path / "a.scene"
-    path.write_text(
-        f"canvas = {{width_mm = 200, height_mm = 60}}\nelements = [{label('moon', 20, 20)}]"
-    )
-    (box,) = load_scene(path, STYLE).boxes().values()
-    geometry = STYLE.geometry
-    assert (box.left, box.top) == (20, 20)
-    assert box.right == pytest.approx(20 + geometry.extent_mm(4))
-    assert box.bottom == pytest.approx(20 + 2 * geometry.row_spacing_mm + geometry.dot_width_mm)
-
-
 FLAT = "{ kind = 'uniform' }"
 NESTED = FLAT
 for _ in range(20):

@@ -22,7 +22,6 @@ from vbraille.scene.patterns import (
     Tile,
     Uniform,
     UniformVibration,
-    Use,
     VertexMarkers,
     Vibration,
 )
@@ -60,23 +59,6 @@ def hum(frequency_hz=50.0):
 
 
 FINE = LinearGrating(ridge_mm=4.0)
-
-
-def test_it_counts_what_is_written_and_says_where_what_is_shown_stands():
-    found = report(
-        circle(id="moon", title="The moon"),
-        Use(name="moon", move_mm=(100, 0)),
-        group("maximum", circle(y=150.0), circle(y=150.0)),
-        a=FINE,
-    )
-    assert found.kinds == {"circle": 3, "group": 1, "linear-grating": 1, "use": 1}
-    first, second, third = found.elements
-    assert (first.said(), first.place) == ("element 1, circle The moon", "elements, number 1")
-    assert first.box == (38, 38, 62, 62)
-    assert second.said() == "element 2, use The moon"
-    assert second.box == (138, 38, 162, 62)
-    assert third.box == (38, 138, 62, 162)
-    assert not found.advice
 
 
 VIBRATING = {

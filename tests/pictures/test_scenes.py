@@ -13,14 +13,10 @@ from vbraille.scene.patterns import (
     Fill,
     Group,
     LinearGrating,
-    Polygon,
     RadialGrating,
-    SignalLevel,
-    Stroke,
     Uniform,
 )
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.scene.signals import Inverse, Speed, Switch
 
 
 def drawn(canvas, *elements):
@@ -43,18 +39,3 @@ def test_a_map_that_says_little_in_many_bytes_is_coarser(side_mm):
     fine = Group(operation="blend", parts=waves[:2], by=LinearGrating(ridge_mm=2.3))
     pixels = drawn(Canvas(width_mm=side_mm, height_mm=side_mm), Group(parts=(*waves, fine)))
     assert max(pixels.shape) < 0.9 * 300_000**0.5
-
-
-CANVAS = Canvas(width_mm=40, height_mm=20)
-SIGNALS = {"view": Switch(levels=(1.0, 0.0)), "other": Inverse(of="view"), "slow": Speed()}
-RING = Circle(center_mm=(30, 10), radius_mm=5, title="Ring", factor="view", stroke=Stroke())
-FIELD = Polygon(
-    vertices_mm=((1, 1), (19, 1), (19, 19), (1, 19)),
-    title="Field",
-    fill=Fill(texture=Uniform(level=0.5, factor="other")),
-)
-BLEND = Group(
-    operation="blend",
-    parts=(Uniform(level=0.9), Uniform(level=0.4)),
-    by=SignalLevel(name="view"),
-)

@@ -11,11 +11,6 @@ from tests.pictures.tables import TABLES, make_line, make_page, with_style
 from vbraille.pictures.series import mapping, profile, strain, wave, write_csv
 from vbraille.render import MAPPINGS, MODELS, STRESS2, VBD, Tuning, single_row
 
-
-def peaks(values):
-    return np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] > values[2:])) + 1
-
-
 SIX = [each for each in MAPPINGS.values() if each.rows <= 6]
 
 

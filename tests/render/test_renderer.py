@@ -40,9 +40,6 @@ def raised_cosine(u_mm, width_mm, level, cycles=7):
     return (delta + 1) / 2
 
 
-SIX = [each for each in MAPPINGS.values() if each.rows <= 6]
-
-
 @pytest.mark.parametrize("level", [0.0, 1.0])
 def test_the_vbd_samples_one_function_at_twelve_places(level):
     scene = models(line(cell(1), 0, cell(1, 4)), tuning=Tuning(texture=level))["vbd"]

@@ -60,7 +60,6 @@ def test_texts_may_have_several_lines_and_french_spaces(tmp_path):
     assert open_scene(path).written.description == "Oui\u202f!\nNon\u00a0?"
 
 
-EVEN = '{kind = "uniform"}'
 REFUSED = {
     "no canvas": ("", "a.scene has no canvas; write [canvas] with width_mm and height_mm"),
     "an image in the net": (
@@ -117,17 +116,9 @@ REFUSED = {
         f"{CANVAS}[textures]\na = 3\n",
         "line 5: a: must be a table, not a whole number",
     ),
-    "an unknown name": (
-        element("use", 'name = "stock:radiall"'),
-        "line 6: name is 'stock:radiall', which nothing here is called; the nea",
-    ),
     "uses that lead back": (
         f'{CANVAS}[textures.a]\nkind = "use"\nname = "b"\n[textures.b]\nkind = "use"\nname = "a"\n',
         "line 7: b: uses itself: a, b, a; leave one of these uses out",
-    ),
-    "a name given twice": (
-        f'{CANVAS}{CIRCLE}{STROKE}id = "a"\n{CIRCLE}{STROKE}id = "a"\n',
-        "a.scene line 10: elements 2: is called a, as is a.scene line 4; give i",
     ),
     "a canvas that is too large": (
         "[canvas]\nwidth_mm = 20000\nheight_mm = 5\n",

@@ -1,6 +1,5 @@
 """Names in scenes: each use becomes what it names, moved and changed, or is refused."""
 
-import doctest
 import typing
 
 import msgspec
@@ -8,7 +7,6 @@ import pytest
 
 from tests.tiers import heavy
 from vbraille.errors import InputError
-from vbraille.scene import locations, traversal
 from vbraille.scene.patterns import (
     AnyPattern,
     Circle,
@@ -185,10 +183,3 @@ def test_what_is_moved_too_far_is_refused():
         "elements, number 2 cannot be moved so far: center, x is 11000 mm; "
         "it must be -10000 to 10000 mm"
     )
-
-
-@pytest.mark.parametrize("module", [locations, traversal], ids=lambda module: module.__name__)
-def test_examples(module):
-    tried = doctest.testmod(module)
-    assert tried.attempted
-    assert not tried.failed

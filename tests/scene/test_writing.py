@@ -171,10 +171,6 @@ def test_long_lists_have_an_item_on_each_line():
     assert max(map(len, text.splitlines())) <= LONGEST
 
 
-def test_no_two_empty_lines_follow_each_other():
-    assert write_scene(Scene(canvas=CANVAS), {(): ("Made.",)}).startswith("# Made.\n\n[canvas]\n")
-
-
 def test_a_written_file_is_opened(tmp_path):
     path = tmp_path / "made.scene"
     scene = Scene(canvas=CANVAS, elements=(Uniform(id="ünder", title="\\ \u2028".strip()),))

@@ -8,7 +8,6 @@ import math
 
 from hypothesis import settings
 from hypothesis import strategies as st
-from msgspec.structs import replace
 
 from tests.render.scene.showing import SIDE_MM
 from tests.render.scene.twinsignals import SIGNALS
@@ -410,15 +409,7 @@ patterns = st.recursive(
 )
 
 
-def _calm(pattern):
-    """The pattern without what would bring it up where there is nothing of it."""
-    low = pattern.vibration is not None and pattern.vibration.of == "low"
-    calm = replace(pattern, inverted=False, vibration=None if low else pattern.vibration)
-    return replace(calm, outside=0.0) if isinstance(calm, Image) else calm
-
-
 # Patterns that end somewhere.
-bounded = st.one_of(*simple(textures).values()).map(_calm)
 
 
 @st.composite

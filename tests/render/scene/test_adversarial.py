@@ -153,9 +153,6 @@ def test_the_very_middle_of_things(name, rng):
     everywhere(scene, rng, count=4)
 
 
-FAR = 9900.0
-
-
 @pytest.mark.parametrize("place", [(9950.0, 9950.0), (9950.0, 30.0)])
 def test_places_ten_metres_away(place, rng):
     x, y = place

@@ -21,9 +21,7 @@ from vbraille.scene.patterns import (
     Stroke,
     Vibration,
 )
-from vbraille.scene.scene import Canvas
 
-CANVAS = Canvas(width_mm=60, height_mm=60)
 DOT = DotStyle(radius_mm=1.0, edge_mm=0.5)
 MOVING = Dotting(dot=DOT, velocity_mm_s=20.0)
 LINE = StraightLine(start_mm=(10, 30), end_mm=(40, 30), dots=MOVING)

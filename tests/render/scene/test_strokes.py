@@ -20,7 +20,6 @@ from vbraille.scene.patterns import (
     Vibration,
 )
 
-R = np.linspace(-6, 6, 12_001)
 SQUARE = ((0, 0), (30, 0), (30, 30), (0, 30))
 
 

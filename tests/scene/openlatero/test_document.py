@@ -2,14 +2,11 @@
 
 import re
 from pathlib import Path
-from typing import get_args
 
 from vbraille.scene.openlatero.elements import MOST_BYTES, MOST_ELEMENTS
 from vbraille.scene.openlatero.making import OPERATIONS, PATTERNS, TEXTURES
-from vbraille.scene.patterns import AnyPattern
 
 PAGE = Path(__file__).parents[3] / "docs" / "converting.md"
-KINDS = {kind.__struct_config__.tag for kind in get_args(AnyPattern)}
 
 
 def table(name):

@@ -136,7 +136,6 @@ DIFFERENT = {
         texture("LinearGrating", waves(8, 0, '<velocity units="Hz">900</velocity>')),
         "its ridges would move at 7200 mm/s; 1000 is taken",
     ),
-    "an unknown element": (circle("<colour>red</colour>"), "colour is not known here, and ignored"),
     "an unknown word": (
         polygon('<corner><enable>yes</enable><type>texture</type></corner>'),
         'corner type "texture" is not known, so "solid" is taken',
