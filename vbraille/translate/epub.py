@@ -77,7 +77,7 @@ class _Epub:
         found = [self.archive.find(chapter.get("href")) for chapter in self.chapters]
         source.expected = sum(info.file_size for info in found if info is not None) * 3 // 4
         if not any(found):
-            raise InputError(f"{source.name} has none of its chapters; get another copy of the book")
+            raise InputError(f"{source.name} has none of its chapters; get the book again")
 
     def _tree(self, member: str) -> Element:
         """Tree of a part that may be missing; a raw "&" or an open tag does not spoil it."""
@@ -165,9 +165,7 @@ def _kind(item: Element) -> str:
     return item.get("media-type").strip().lower()
 
 
-def _entries(
-    holder: Element, member: str, level: int = 0
-) -> Iterator[tuple[str, tuple[int, str]]]:
+def _entries(holder: Element, member: str, level: int = 0) -> Iterator[tuple[str, tuple[int, str]]]:
     title = ""
     for child in holder.elements:
         title = child.said("a", "navlabel") or title  # a label stands before its address
