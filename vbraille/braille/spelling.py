@@ -21,24 +21,15 @@ LETTERS = dict(
         strict=True,
     )
 )
-# A cell that was not read: how it is typed and kept, and its number among dot masks.
-UNREAD = "?"
-UNREAD_MASK = 0x100
+UNREAD = "?"  # a cell that was not read, as it is typed and kept
 
-_LETTER_OF = {mask: letter for letter, mask in LETTERS.items()}
 _DOT_NUMBERS = re.compile(r"[0-9-]+")
 _LONGEST_QUOTE = 20
 
 
-def to_braille(masks: Iterable[int]) -> str:
-    """Unicode braille of cells."""
-    return "".join(chr(UNICODE_BLANK + mask) for mask in masks)
-
-
-def to_answer(masks: Iterable[int | None]) -> str:
-    """Answer as it is kept: Unicode braille, ``?`` for a place that is `UNREAD_MASK` or None."""
-    unread = (None, UNREAD_MASK)
-    return "".join(UNREAD if mask in unread else chr(UNICODE_BLANK + mask) for mask in masks)
+def to_braille(masks: Iterable[int | None]) -> str:
+    """Unicode braille of cells; ``?`` for one that is None, which was not read."""
+    return "".join(UNREAD if mask is None else chr(UNICODE_BLANK + mask) for mask in masks)
 
 
 def name_dots(mask: int) -> str:
@@ -71,7 +62,7 @@ def spell(text: str, keys: dict[str, int]) -> tuple[int, ...]:
     ValueError
         If something in it is no cell.
     """
-    return tuple(mask for _, mask in _cells(text, keys))
+    return tuple(mask for _, mask in _cells(text, LETTERS | keys))
 
 
 def spell_string(text: str, keys: dict[str, int]) -> tuple[int, ...]:
@@ -108,8 +99,8 @@ def parse_answer(text: str, *, places: int, keys: dict[str, int], shown_dots: in
     Parameters
     ----------
     text
-        Text as typed: spelled as for `spell`, with letters in either case and ``?`` for a place
-        not read. A lone ``?`` means that no place was read.
+        Text as typed: spelled as for `spell`, with letters and keys in either case and ``?`` for a
+        place not read. A lone ``?`` means that no place was read.
     places
         Number of cells asked for.
     keys
@@ -127,9 +118,11 @@ def parse_answer(text: str, *, places: int, keys: dict[str, int], shown_dots: in
         raise ValueError(f"nothing was typed; type {count(places, 'place')}, or ? if none was read")
     if text.strip() == UNREAD:
         return UNREAD * places
-    typed = _cells(text, {UNREAD: UNREAD_MASK, **_either_case(keys)})
+    known = LETTERS | keys
+    capitals = {key.upper(): mask for key, mask in known.items() if len(key.upper()) == 1}
+    typed = _cells(text, capitals | known | {UNREAD: 0})
     for spelling, mask in typed:
-        if mask != UNREAD_MASK and mask & ~shown_dots:
+        if mask & ~shown_dots:
             raise ValueError(
                 f"{spelling!r} has {name_dots(mask)}, and the display shows "
                 f"{name_dots(shown_dots)} only; type a cell of those, or ? for one not read"
@@ -143,7 +136,7 @@ def parse_answer(text: str, *, places: int, keys: dict[str, int], shown_dots: in
         raise ValueError(
             f"{count(len(typed), 'place')} typed, and {places} asked for; type no more"
         )
-    return to_answer(mask for _, mask in typed)
+    return to_braille(None if spelling == UNREAD else mask for spelling, mask in typed)
 
 
 ORDINALS = ("first", "second", "third", "fourth", "fifth")
@@ -166,39 +159,30 @@ def say_cells(answer: str, keys: dict[str, int]) -> str:
     answer
         Answer in Unicode braille, with ``?`` for a place not read.
     keys
-        Dot mask of each key of the protocol. A cell that has a key is said by it.
+        Dot mask of each key of the protocol. A cell that has a key is said by its first.
     """
-    return " ".join(_say(place, keys) for place in answer)
-
-
-def _say(place: str, keys: dict[str, int]) -> str:
-    if place == UNREAD:
-        return UNREAD
-    mask = ord(place) - UNICODE_BLANK
-    for key, cell in keys.items():
-        if cell == mask:
-            return key
-    letter = _LETTER_OF.get(mask)
     # A letter that is the key of another cell would be taken for that one.
-    if letter is not None and letter not in keys:
-        return letter
-    return Cells.from_unicode(place).to_dots() if mask else "blank"
+    letters = {mask: letter for letter, mask in LETTERS.items() if letter not in keys}
+    names = {0: "blank"} | letters | {keys[key]: key for key in reversed(keys)}
+    said = {chr(UNICODE_BLANK + mask): name for mask, name in names.items()} | {UNREAD: UNREAD}
+    return " ".join(said.get(place) or Cells.from_unicode(place).to_dots() for place in answer)
 
 
-def _either_case(keys: dict[str, int]) -> dict[str, int]:
-    """Spellings in which answers may be typed: letters and keys in either case; keys win."""
-    cells = LETTERS | keys
-    return {key.upper(): mask for key, mask in cells.items() if len(key.upper()) == 1} | cells
-
-
-def _cells(text: str, keys: dict[str, int]) -> list[tuple[str, int]]:
-    """Spelling and dot mask of each cell."""
+def _cells(text: str, known: dict[str, int]) -> list[tuple[str, int]]:
+    """Spelling and dot mask of each cell, by dot numbers or by the masks of known characters."""
     cells: list[tuple[str, int]] = []
     for word in text.split():
         if _DOT_NUMBERS.fullmatch(word):
             cells.append((word, _by_dots(word)))
-        else:
-            cells += [(character, _by_character(character, keys)) for character in word]
+            continue
+        for character in word:
+            mask = known.get(character, ord(character) - UNICODE_BLANK)
+            if not 0 <= mask <= 0xFF:
+                raise ValueError(
+                    f"{character!r} is no cell; a cell is a letter a to z, a key of the protocol, "
+                    f"a Unicode braille character or dot numbers such as 1-4 between spaces"
+                )
+            cells.append((character, mask))
     return cells
 
 
@@ -211,18 +195,6 @@ def _by_dots(word: str) -> int:
             f"{_shorten(word)} has a dot twice; put a space between the dot numbers of two cells"
         )
     return mask_of(map(int, dots.strip("0")))
-
-
-def _by_character(character: str, keys: dict[str, int]) -> int:
-    mask = keys.get(character, LETTERS.get(character))
-    if mask is not None:
-        return mask
-    if UNICODE_BLANK <= ord(character) <= UNICODE_BLANK + 0xFF:
-        return ord(character) - UNICODE_BLANK
-    raise ValueError(
-        f"{character!r} is no cell; a cell is a letter a to z, a key of the protocol, a Unicode "
-        f"braille character or dot numbers such as 1-4 between spaces"
-    )
 
 
 def _shorten(text: str) -> str:

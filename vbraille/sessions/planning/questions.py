@@ -19,7 +19,7 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 import numpy as np
 from msgspec import Meta
 
-from vbraille.braille.spelling import ORDINALS, UNREAD, parse_answer, say_cells, to_answer
+from vbraille.braille.spelling import ORDINALS, UNREAD, parse_answer, say_cells, to_braille
 from vbraille.devices.events import Button, Knob
 from vbraille.sessions.planning.spellings import parse_text
 from vbraille.sessions.planning.trial import BLANK, Trial
@@ -233,7 +233,7 @@ class Identify(Question, frozen=True, kw_only=True, tag="identify"):
 
     def simulate(self, felt: FeltTrial) -> str:
         """Give the cells as they were felt."""
-        return to_answer(felt.cells())
+        return to_braille(felt.cells())
 
     def guesses(self, trial: Trial) -> Sequence[str]:
         """Return that no cell was read."""

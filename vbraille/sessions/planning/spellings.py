@@ -5,7 +5,7 @@ from __future__ import annotations
 import unicodedata
 from functools import cache
 
-from vbraille.braille.spelling import UNREAD, to_answer, to_braille
+from vbraille.braille.spelling import UNREAD, to_braille
 
 
 def cells_of(text: str, table: str) -> str:
@@ -50,7 +50,7 @@ def parse_text(line: str, text: str, cells: str, table: str) -> str:
     if all("⠀" <= character <= "⣿" or character in f"{UNREAD} " for character in typed):
         return "".join(typed.split())
     parts = map(str.strip, typed.split(UNREAD))
-    return UNREAD.join(to_answer(_masks(part, table)) if part else "" for part in parts)
+    return UNREAD.join(to_braille(_masks(part, table)) if part else "" for part in parts)
 
 
 @cache
