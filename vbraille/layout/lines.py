@@ -270,14 +270,14 @@ class Layout:
         """Number of a line, from 1, counted from the start."""
         return self._count(blocks=line.block.number)[line.block.number] + line.index + 1
 
-    def uncounted(self, line: Line) -> int:
-        """Number of blocks before a line that its number needs, and that are not laid out yet."""
-        return max(line.block.number + 1 - len(self._before), 0)
+    @property
+    def counted(self) -> int:
+        """Number of blocks whose lines are counted, from the first on."""
+        return len(self._before) - 1
 
-    def count_on(self, blocks: int) -> bool:
-        """Count the lines of some more blocks; tell whether there were any."""
-        counted = len(self._before)
-        return len(self._count(blocks=counted + blocks - 1)) > counted
+    def count_on(self, blocks: int) -> None:
+        """Count the lines of some more blocks."""
+        self._count(blocks=self.counted + blocks)
 
     def count(self) -> int:
         """Number of lines in all; this lays out the whole book."""
