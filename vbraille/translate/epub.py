@@ -74,11 +74,6 @@ class _Epub:
         spine = sorted(root.iter("itemref"), key=lambda each: each.get("linear") == "no")
         chapters = [self._readable(each.get("idref")) for each in spine]
         self.chapters = list(dict.fromkeys(each for each in chapters if each is not None))
-        if not self.chapters:
-            raise InputError(
-                f"{source.name} does not say what its chapters are: its spine is empty; get "
-                f"another copy of the book"
-            )
         found = [self.archive.find(chapter.get("href")) for chapter in self.chapters]
         source.expected = sum(info.file_size for info in found if info is not None) * 3 // 4
         if not any(found):
@@ -86,7 +81,7 @@ class _Epub:
 
     def _tree(self, member: str) -> Element:
         """Tree of a part that may be missing; a raw "&" or an open tag does not spoil it."""
-        return read_tree(self.archive.read_if(member), member, lambda _: None, xml=True)
+        return read_tree(self.archive.read_if(member), member, lambda _: None)
 
     def _readable(self, identity: str) -> Element | None:
         """Item of the manifest, or the one to fall back to that is markup."""
@@ -97,35 +92,30 @@ class _Epub:
             item = self.items.get(item.get("fallback"))
         return first
 
-    def _entries(self, kinds: set[str], ncx: str) -> list[tuple[int, str, str]]:
-        """Level, title and anchor of each entry of a list of the nav, or else of the NCX.
+    def _entries(self, *kinds: str) -> dict[str, tuple[int, str]]:
+        """Level and title of each entry of a list of the nav, or else of the NCX, by its anchor.
 
         Parameters
         ----------
-        kinds
-            Types or roles of the list in the nav.
-        ncx
-            Name of its element in the NCX.
+        *kinds
+            Types or roles of the list in the nav, and its name in the NCX.
         """
-        items = list(self.items.values())
+        items = self.items.values()
         holders = [item for item in items if "nav" in item.get("properties").split()]
         for item in [*holders, *(item for item in items if _kind(item) == _NCX)]:
-            for listed in self._tree(item.get("href")).iter("nav", ncx):
-                is_it = listed.name == ncx or listed.words & kinds
+            for listed in self._tree(item.get("href")).iter("nav", "navmap", "pagelist"):
+                is_it = {listed.name, *listed.words}.intersection(kinds)
                 found = list(_entries(listed, item.get("href"))) if is_it else []
                 if found:
-                    return found
-        return []
+                    return dict(reversed(found))  # the first of an anchor counts
+        return {}
 
     def blocks(self) -> Iterator[Block]:
         """Blocks of all chapters, with what the contents and the list of pages tell of them."""
-        contents: dict[str, tuple[int, str]] = {}
-        for level, title, anchor in self._entries({"toc", "doc-toc"}, "navmap"):
-            contents.setdefault(anchor, (level, title))
-        listed = self._entries({"page-list", "doc-pagelist"}, "pagelist")
-        pages = {anchor: label for _, label, anchor in listed}
+        contents = self._entries("toc", "doc-toc", "navmap")
+        pages = self._entries("page-list", "doc-pagelist", "pagelist")
         groups = count(1)
-        texts = wrong = 0
+        wrong = 0
         for chapter in self.chapters:
             blocks = self._chapter(chapter, groups)
             kinds = [block.kind for block in blocks]
@@ -135,17 +125,12 @@ class _Epub:
                 if BlockKind.HEADING in kinds[number : number + _NEAR]:
                     entry = None  # which the text has itself
                 if BlockKind.PAGE not in kinds:
-                    yield from (Block(pages[n], BlockKind.PAGE) for n in anchors if n in pages)
+                    yield from (Block(pages[n][1], BlockKind.PAGE) for n in anchors if n in pages)
                 cells, text = None, block.text
                 if self.source.in_cells:
                     text, strange = re.subn("[^ -~⠀-⣿]", _FULL, _SPACES.sub(" ", text))
                     cells, wrong = Cells.from_brf(text), wrong + strange
-                texts += text != ""
                 yield block.replace(anchors=anchors, entry=entry, text=text, cells=cells)
-        if not texts:
-            raise InputError(
-                f"{self.source.name} holds no text that can be read; give another book"
-            )
         if wrong:
             self.source.note(
                 f"{self.source.name} should be all braille and has "
@@ -165,7 +150,7 @@ class _Epub:
         else:
             try:
                 name = f"{source.name} ({member})"
-                root = read_tree(self.archive.read(member), name, source.note, xml=True)
+                root = read_tree(self.archive.read(member), name, source.note)
                 return Walker(source.language, member, spell, groups).read(root)
             except InputError as error:
                 if len(self.chapters) == 1:
@@ -180,16 +165,14 @@ def _kind(item: Element) -> str:
     return item.get("media-type").strip().lower()
 
 
-def _entries(holder: Element, member: str, level: int = 0) -> Iterator[tuple[int, str, str]]:
+def _entries(holder: Element, member: str, level: int = 0) -> Iterator[tuple[str, tuple[int, str]]]:
+    title = ""
     for child in holder.elements:
-        depth = level + (child.name in ("ol", "ul", "navpoint"))
-        title, address = child.text, child.get("href")
-        if child.name in ("navpoint", "pagetarget"):
-            title = child.said("navlabel")
-            address = next((each.get("src") for each in child.iter("content")), "")
-        if title.strip() and address:
-            yield max(depth, 1), " ".join(title.split()), inside(member, address)
-        yield from _entries(child, member, depth)
+        title = child.said("a", "navlabel") or title  # a label stands before its address
+        address = child.get("href") or child.get("src")
+        if title and address:
+            yield inside(member, address), (max(level, 1), title)
+        yield from _entries(child, member, level + (child.name in ("ol", "ul", "navpoint")))
 
 
 def _in_braille(text: str) -> str:

@@ -35,9 +35,7 @@ _LONGEST_NUMBER = 6  # of a note, with its brackets
 
 def read_html(source: Source, encoding: str | None = None) -> Iterator[Block]:
     """Read a page of HTML, or DTBook, the markup of DAISY 3."""
-    content = source.stream.read()
-    xml = content[:200].lstrip().startswith(b"<?xml")
-    root = read_tree(content, source.name, source.note, xml=xml, encoding=encoding)
+    root = read_tree(source.stream.read(), source.name, source.note, encoding)
     return tree_blocks(source, root)
 
 
@@ -205,19 +203,19 @@ class Walker:
                 self._walk(child)
 
     def _walk(self, element: Element) -> None:
-        name, words = element.name, element.words
-        is_note, lists_notes = words & _NAMES["notes"], words & _NAMES["note_lists"]
-        hidden = _is_hidden(element) and not is_note and not lists_notes
-        if hidden or name in _NAMES["skipped"] or words & _NAMES["back"]:
+        traits = _traits(element)
+        is_note, lists_notes = traits & _NAMES["notes"], traits & _NAMES["note_lists"]
+        hidden = traits & _NAMES["hidden"] and not is_note and not lists_notes
+        if hidden or traits & _NAMES["skipped"]:
             return
-        if name == "pagenum" or words & _NAMES["pages"]:
+        if traits & _NAMES["pages"]:
             self._page(element)
             return
         before = self._role
-        is_block = name in _NAMES["blocks"] or is_note or "heading" in words
+        is_block = bool(is_note or traits & _NAMES["blocks"])
         if is_block:
             self._end()
-        identity = element.get("id") or (element.get("name") if name == "a" else "")
+        identity = element.get("id") or (element.get("name") if element.name == "a" else "")
         if identity:
             self._anchors.append(self._prefix + identity)
         tag = element.get("lang").strip().replace("_", "-")
@@ -227,14 +225,16 @@ class Walker:
             self._become(BlockKind.NOTE)
         elif lists_notes:
             self._become(notes=True)
+        if traits & _NAMES["references"]:
+            self._become(refers=True)
         start, known = self._next, len(self._marks)
         self._read(element)
         if len(self._text) > start:
             if tag and not is_block and not _same(tag, self._role.language or self._language):
                 self._marks.append(Mark(MarkKind.LANGUAGE, start, len(self._text), tag))
-            refers = any(mark.kind is MarkKind.NOTE for mark in self._marks[known:])
-            for kind in _emphases(element):
-                if kind in _SMALL and refers:
+            large = is_block or any(mark.kind is MarkKind.NOTE for mark in self._marks[known:])
+            for kind in [_EMPHASES[name] for name in _EMPHASES if name in traits]:
+                if kind in _SMALL and large:
                     continue
                 if kind in _SMALL:
                     self._text[start:] = small("".join(self._text[start:]), _SMALL[kind])
@@ -271,12 +271,8 @@ class Walker:
             case "lic" if self._text:
                 self._blank = False
                 self._add("  ")
-            case "sup":
-                self._become(refers=bool(words & _NAMES["references"]))
             case "pre" | "line" as name:
                 self._become(BlockKind.LINE, lines=name == "pre")
-            case "note" | "annotation":
-                self._become(BlockKind.NOTE)
             case "blockquote" if role.kind is not BlockKind.NOTE:
                 self._become(BlockKind.QUOTE, role.quotes + 1, quotes=role.quotes + 1)
             case "doctitle" | "hd" | "bridgehead":
@@ -344,10 +340,7 @@ class Walker:
 
     def _link(self, element: Element) -> None:
         address = element.get("href") or "#" + element.get("idref").lstrip("#")
-        refers = (
-            self._role.refers or bool(element.words & _NAMES["references"]) or element.name != "a"
-        )
-        refers = refers or _WORD_NOTE.match(address) is not None
+        refers = self._role.refers or _WORD_NOTE.match(address) is not None
         start, known = self._next, len(self._marks)
         self._inside(element)
         inner = [mark for mark in self._marks[known:] if mark.kind is not MarkKind.UNDERLINE]
@@ -390,14 +383,16 @@ class Walker:
 
     def _svg(self, element: Element) -> None:
         title = _label(element) or element.said("title")
-        text = " ".join(" ".join(each.text for each in element.iter("text")).split())
-        pictures = [_label(picture) for picture in element.iter("image")]
+        text = " ".join(each.text for each in element.iter("text"))
+        pictures = [*element.iter("image")]
         if title:
             self._add_apart(title, MarkKind.IMAGE)
-        elif text:
+        elif text.strip():
             self._say(f" {text} ")
+        elif pictures:
+            self._img(pictures[0])
         else:
-            self._unshown("picture" if pictures else "drawing", "".join(pictures[:1]))
+            self._unshown("drawing")
 
     def _math(self, element: Element) -> None:
         text = formula_text(element)
@@ -433,14 +428,12 @@ class Walker:
             self._put(page)
 
 
-def _emphases(element: Element) -> list[MarkKind]:
-    """Kinds of emphasis that an element gives its text."""
-    named = [element.name]
-    if element.name == "span":
-        named += [word for word in element.words if word.startswith(("sub", "sup"))]
+def _traits(element: Element) -> set[str]:
+    """Name, words, attributes and look of an element, as `names.toml` has them."""
+    words = (f".{word}" for word in element.words)
+    attributes = map(":".join, element.attributes.items())
     style = element.get("style").lower().replace(" ", "")
-    named += [css for css in _EMPHASES if style and ":" in css and css in style]
-    return [_EMPHASES[name] for name in named if name in _EMPHASES]
+    return {element.name, *words, *attributes, *re.split("[;!]", style)}
 
 
 def _clipped(text: str, start: int, marks: list[Mark], role: _Role) -> Block:
@@ -470,9 +463,3 @@ def _same(one: str, other: str) -> bool:
     """Tell whether two tags are of one language, or the first of none."""
     one, other = f"{one.lower()}-", f"{other.lower()}-"
     return one.startswith(other) or other.startswith(one) or one in ("und-", "zxx-")
-
-
-def _is_hidden(element: Element) -> bool:
-    style = element.get("style").lower().replace(" ", "")
-    said = "hidden" in element.attributes or element.get("aria-hidden") == "true"
-    return said or "display:none" in style or "visibility:hidden" in style

@@ -61,7 +61,7 @@ def read_markdown(source: Source, encoding: str | None = None) -> Iterator[Block
             _read_front(source, token.content)
     html = parser.renderer.render(tokens, parser.options, {})
     content = html.encode("utf-8", "replace")
-    root = read_tree(content, source.name, source.note, xml=False)
+    root = read_tree(content, source.name, source.note)
     for image in root.iter("img"):  # an empty text is none here, and no sign of a decoration
         if not image.get("alt").strip():
             image.attributes.pop("alt", None)

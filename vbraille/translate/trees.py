@@ -211,11 +211,9 @@ def read_tree(
     content: bytes,
     name: str,
     note: Callable[[str], object],
-    *,
-    xml: bool,
     encoding: str | None = None,
 ) -> Element:
-    """Tree of a file of markup.
+    """Tree of a file of markup, as XML if it is that, and otherwise as HTML.
 
     Parameters
     ----------
@@ -225,8 +223,6 @@ def read_tree(
         Name of the file in messages.
     note
         Function that is given sentences on what was read otherwise than it says.
-    xml
-        Whether it should be XML; what is none is read as HTML.
     encoding
         Encoding that overrides what the bytes say.
 
@@ -245,7 +241,7 @@ def read_tree(
         note(f"{name} {wrong}")
     text = _XML_HEAD.sub("", text[:4096]) + text[4096:]
     try:
-        unfolded = _ENTITY.sub(lambda found: html.unescape(found[0]), text) if xml else ""
+        unfolded = _ENTITY.sub(lambda found: html.unescape(found[0]), text)
         tree = _Tree(unfolded.encode("utf-8", "replace"), name, xml=True)
     except _DamagedError:
         tree = _Tree(text.encode("utf-8", "replace") or b" ", name, xml=False)
