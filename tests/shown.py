@@ -1,12 +1,11 @@
-"""Lines compiled in one call, and the arrays that tests show them on."""
+"""The arrays that tests show lines on, and what is shown on them."""
 
 from dataclasses import replace
 
 import numpy as np
 
-from tests.render.braille.reference import deflections
 from vbraille.display import Display
-from vbraille.render import STRESS2, VBD, BrailleStyle, Mapping, kernels
+from vbraille.render import STRESS2, VBD, Mapping, kernels
 from vbraille.render.braille.mappings import NONE
 from vbraille.render.program import Program
 from vbraille.render.work import NO_PART
@@ -22,22 +21,9 @@ def array_of(rows, columns, column_pitch_mm, row_pitch_mm) -> Display:
     return Display("array", rows, columns, column_pitch_mm, row_pitch_mm)
 
 
-def rendered(masks, *, array, profile, mapping, geometry, tuning, first_row=None, anchor_mm=None):
-    """A line on a display, for places of the array's centre, or of the anchor that is given."""
-    style = BrailleStyle(profile, mapping, geometry, tuning, first_row)
-    program = style.render(masks, array)
-    return program if anchor_mm is None else program.with_anchor(anchor_mm)
-
-
-def from_left(masks, **manner):
+def from_left(masks, style, display) -> Program:
     """A line on a display, for places of the left column as the twin has them."""
-    return rendered(masks, **manner).with_anchor(0.0)
-
-
-def twin(x_mm, masks, *, array, profile, mapping, geometry, tuning, first_row=None, anchor_mm=0.0):
-    """The frames of a line in plain numpy, for places of the left column."""
-    style = BrailleStyle(profile, mapping, geometry, tuning, first_row)
-    return deflections(x_mm, masks, style, array, anchor_mm)
+    return style.render(masks, display).with_anchor(0.0)
 
 
 def full(display) -> Program:

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tests.benchmarks.timing import Result, vbraille
-from tests.shown import rendered
 from vbraille.engine.host import Host
 from vbraille.engine.realtime import PRIORITY
 from vbraille.render import STRESS2
@@ -53,14 +52,7 @@ def run() -> Iterator[Result]:
 
 def line():
     """A line of many dots."""
-    return rendered(
-        np.arange(26, dtype=np.uint8) + 30,
-        array=STRESS2.display,
-        profile=STRESS2.style.profile,
-        mapping=STRESS2.style.mapping,
-        geometry=STRESS2.style.geometry,
-        tuning=STRESS2.style.tuning,
-    )
+    return STRESS2.style.render(np.arange(26, dtype=np.uint8) + 30, STRESS2.display)
 
 
 @contextmanager

@@ -9,7 +9,6 @@ import numpy as np
 
 from tests.benchmarks.timing import Result, ratio
 from tests.conftest import SEED, TEXTS
-from tests.shown import rendered
 from vbraille.engine.clock import ManualClock
 from vbraille.engine.loop import Loop
 from vbraille.engine.record import Ring
@@ -32,14 +31,7 @@ TICKS = 50_000
 
 
 def renderer(masks: np.ndarray):
-    return rendered(
-        masks,
-        array=STRESS2.display,
-        profile=STRESS2.style.profile,
-        mapping=STRESS2.style.mapping,
-        geometry=STRESS2.style.geometry,
-        tuning=STRESS2.style.tuning,
-    )
+    return STRESS2.style.render(masks, STRESS2.display)
 
 
 def run() -> Iterator[Result]:

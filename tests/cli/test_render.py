@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from tests.cli import program
+from tests.render.braille.reference import deflections
 from tests.render.reader import read_back
-from tests.shown import rendered, twin
 from tests.tiers import by_tier, heavy
 from vbraille import __version__
 from vbraille.braille.geometry import PRESETS, Geometry
 from vbraille.layout import Layout
 from vbraille.recording import print_in
-from vbraille.render import MAPPINGS, MODELS, Tuning, single_row
+from vbraille.render import MAPPINGS, MODELS, BrailleStyle, Tuning, single_row
 from vbraille.translate import Book, BrailleTable, open_source
 from vbraille.wording import count
 
@@ -30,14 +30,12 @@ def from_the_file_alone(file):
     attributes = file.attrs
     model = MODELS[attributes["model"]]
     name = attributes["mapping"]
-    show = {
-        "array": model.display,
-        "profile": model.style.profile,
-        "mapping": MAPPINGS[name] if name in MAPPINGS else single_row(int(name[-1])),
-        "geometry": Geometry(**json.loads(attributes["geometry"])),
-        "tuning": Tuning(**json.loads(attributes["tuning"])),
-        "anchor_mm": model.display.span_mm / 2,
-    }
+    style = BrailleStyle(
+        model.style.profile,
+        MAPPINGS[name] if name in MAPPINGS else single_row(int(name[-1])),
+        Geometry(**json.loads(attributes["geometry"])),
+        Tuning(**json.loads(attributes["tuning"])),
+    )
     np.testing.assert_array_equal(attributes["column_offset_mm"], model.display.column_offsets_mm())
     np.testing.assert_array_equal(attributes["row_offset_mm"], model.display.row_offsets_mm())
     cells, length = file["page/cells"][:], file["page/length"][:]
@@ -47,8 +45,8 @@ def from_the_file_alone(file):
     for row in range(len(cells)):
         here = line == row
         masks = cells[row, : length[row]]
-        again[here] = rendered(masks, **show).path(x_mm[here])
-        plain[here] = twin(x_mm[here], masks, **show)
+        again[here] = style.render(masks, model.display).path(x_mm[here])
+        plain[here] = deflections(x_mm[here], masks, style, model.display)
     return again, plain
 
 

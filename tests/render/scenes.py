@@ -1,20 +1,22 @@
 """Lines and ways to show them, drawn at random, and what is plain to say about each."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numba
 import numpy as np
 from hypothesis import strategies as st
 
 from tests import tiers
-from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array_of, from_left, twin
+from tests.render.braille.reference import deflections
+from tests.shown import LATERO, STRESS2_ARRAY, VBD_ARRAY, array_of, from_left
 from vbraille.braille.geometry import PRESETS, Geometry
 from vbraille.display import Display
 from vbraille.render import (
     MAPPINGS,
     STRESS2,
     VBD,
+    BrailleStyle,
     Mapping,
     Profile,
     Tuning,
@@ -60,49 +62,41 @@ def frame_at(renderer, x_mm, dtype=np.float64):
 @dataclass(frozen=True)
 class Scene:
     masks: np.ndarray
+    style: BrailleStyle
     array: Display
-    profile: Profile
-    mapping: Mapping
-    geometry: Geometry
-    tuning: Tuning
-
-    @property
-    def manner(self):
-        return {
-            "array": self.array,
-            "profile": self.profile,
-            "mapping": self.mapping,
-            "geometry": self.geometry,
-            "tuning": self.tuning,
-            "anchor_mm": 0.0,  # places of the scenes are the left column's
-        }
 
     def renderer(self):
-        return from_left(self.masks, **self.manner)
+        return from_left(self.masks, self.style, self.array)
 
     def twin(self, x_mm):
-        return twin(x_mm, self.masks, **self.manner)
+        return deflections(x_mm, self.masks, self.style, self.array, 0.0)
 
     def idle(self):
         """Idle ends of the array's rows, as a column."""
         idle = np.zeros((self.array.rows, 1))
-        idle[self.first_row : self.first_row + self.mapping.rows, 0] = self.mapping.inverted
+        idle[self.first_row : self.first_row + self.style.mapping.rows, 0] = (
+            self.style.mapping.inverted
+        )
         return idle
 
     @property
     def first_row(self):
         """Where the mapping stands: in the middle, or a row above it."""
-        return (self.array.rows - self.mapping.rows) // 2
+        return (self.array.rows - self.style.mapping.rows) // 2
 
     def dots(self):
         """Actuator row and left edge, in mm, of each dot wherever it is shown."""
         return [
-            (row, number * self.geometry.cell_pitch_mm + side * self.geometry.dot_spacing_mm)
+            (
+                row,
+                number * self.style.geometry.cell_pitch_mm
+                + side * self.style.geometry.dot_spacing_mm,
+            )
             for number, mask in enumerate(self.masks)
             for dot, (dot_row, side) in DOT_PLACES.items()
             if mask & cell(dot)
             for row, shown in enumerate(
-                self.mapping.right if side else self.mapping.left, self.first_row
+                self.style.mapping.right if side else self.style.mapping.left, self.first_row
             )
             if shown == dot_row
         ]
@@ -113,33 +107,23 @@ class Scene:
         Half a sinusoid: (π/W) (cos θ + 8a cos 8θ) / M(a), with 8a = T and M ≥ 1. Raised cosine:
         half of (1 - T) π/R + T kπ/R, with R = W/2.
         """
-        level = self.tuning.texture
-        if self.profile is Profile.HALF_SINE:
+        level = self.style.tuning.texture
+        if self.style.profile is Profile.HALF_SINE:
             waves = 1 + level
         else:
-            waves = 1 - level + self.tuning.cycles * level
-        return self.tuning.contrast * waves * math.pi / self.geometry.dot_width_mm
+            waves = 1 - level + self.style.tuning.cycles * level
+        return self.style.tuning.contrast * waves * math.pi / self.style.geometry.dot_width_mm
 
     def rounding(self, x_mm):
         """How far deflections may differ because a place in mm has only so many digits."""
-        far = np.abs(x_mm) + self.array.span_mm + self.geometry.extent_mm(len(self.masks))
+        far = np.abs(x_mm) + self.array.span_mm + self.style.geometry.extent_mm(len(self.masks))
         return 3 * self.steepest_per_mm() * np.spacing(np.max(far))
 
 
 def models(masks, **changes):
     """A scene of each display as it comes, or with changes."""
     return {
-        model.name: Scene(
-            masks,
-            **{
-                "array": model.display,
-                "profile": model.style.profile,
-                "mapping": model.style.mapping,
-                "geometry": model.style.geometry,
-                "tuning": model.style.tuning,
-                **changes,
-            },
-        )
+        model.name: Scene(masks, replace(model.style, **changes), model.display)
         for model in (VBD, STRESS2)
     }
 
@@ -210,14 +194,9 @@ mappings = {
 @st.composite
 def scenes(draw):
     array = draw(arrays)
-    return Scene(
-        draw(lines),
-        array=array,
-        profile=draw(st.sampled_from(Profile)),
-        mapping=draw(mappings[array.rows]),
-        geometry=draw(geometries),
-        tuning=draw(tunings),
-    )
+    masks, profile = draw(lines), draw(st.sampled_from(Profile))
+    style = BrailleStyle(profile, draw(mappings[array.rows]), draw(geometries), draw(tunings))
+    return Scene(masks, style, array)
 
 
 # How far from an edge, in dot widths.
@@ -231,7 +210,7 @@ many_places = st.lists(_place, min_size=2, max_size=30)
 def scenes_with_places(draw, places=few_places):
     """A scene, and positions that bring some column to, near, or between the edges of dots."""
     scene = draw(scenes())
-    geometry, width = scene.geometry, scene.geometry.dot_width_mm
+    geometry, width = scene.style.geometry, scene.style.geometry.dot_width_mm
     # One cell more on each side: there, too, are edges that the kernels reckon with.
     edges = [
         number * geometry.cell_pitch_mm + side * geometry.dot_spacing_mm + right * width

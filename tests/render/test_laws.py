@@ -126,7 +126,7 @@ def test_one_pitch_shifts_the_frame_by_one_column(drawn):
 @given(scenes_with_places())
 def test_rest_exactly_outside_every_dot(drawn):
     scene, x_mm = drawn
-    width = scene.geometry.dot_width_mm
+    width = scene.style.geometry.dot_width_mm
     idle = scene.idle()
     surface = x_mm[:, None] + scene.array.column_offsets_mm()
     outside = np.ones((x_mm.size, *scene.array.shape), bool)
@@ -139,10 +139,10 @@ def test_rest_exactly_outside_every_dot(drawn):
     idles = np.broadcast_to(idle, frames.shape)
     np.testing.assert_array_equal(frames[outside], idles[outside])
     np.testing.assert_array_equal(scene.renderer().path(x_mm)[outside], idles[outside])
-    nominal = replace(scene, tuning=replace(scene.tuning, texture=0.0))
+    nominal = replace(scene, style=scene.style.replace(texture=0.0))
     swings = np.abs(frames_at(nominal, x_mm) - idle)
     # Half a swing or more in the middle half of a dot, or this law would hold of nothing at all.
-    assert np.all(swings[well_inside] >= scene.tuning.contrast / 2 - 1e-9)
+    assert np.all(swings[well_inside] >= scene.style.tuning.contrast / 2 - 1e-9)
 
 
 @examples(200)
@@ -194,7 +194,7 @@ def test_no_slope_is_steeper_than_the_equations_allow(drawn, exponent):
 @given(scenes_with_places())
 def test_contrast_scales_the_swing_about_the_idle_end(drawn):
     scene, x_mm = drawn
-    full = replace(scene, tuning=replace(scene.tuning, contrast=1.0))
+    full = replace(scene, style=scene.style.replace(contrast=1.0))
     swings = frames_at(full, x_mm) - scene.idle()
-    expected = scene.idle() + scene.tuning.contrast * swings
+    expected = scene.idle() + scene.style.tuning.contrast * swings
     np.testing.assert_allclose(frames_at(scene, x_mm), expected, rtol=0, atol=1e-12)

@@ -1,13 +1,15 @@
 """Every cell of a line can be told again from frames and positions alone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tests.render.reader import read_back
 from tests.render.scenes import JIT, cell
-from tests.shown import LATERO, rendered
+from tests.shown import LATERO
 from vbraille.braille import geometry
-from vbraille.render import MAPPINGS, STRESS2, VBD, Profile, Tuning, single_row
+from vbraille.render import MAPPINGS, STRESS2, VBD, BrailleStyle, Profile, Tuning, single_row
 
 TEXTURES = [0.0, 0.25, 1.0] if JIT else [0.25]
 STEP_MM = 0.7 if JIT else 1.5
@@ -28,13 +30,10 @@ def hand(rng, array, geometry, cells):
     return np.concatenate([there, back[::-1]])
 
 
-def told(rng, masks, *, array, profile, mapping, geometry, tuning):
-    program = rendered(
-        masks, array=array, profile=profile, mapping=mapping, geometry=geometry, tuning=tuning
-    )
-    x_mm = hand(rng, array, geometry, len(masks))
-    frames = program.path(x_mm)
-    read = read_back(frames, x_mm, array=array, mapping=mapping, geometry=geometry)
+def told(rng, masks, style, array):
+    x_mm = hand(rng, array, style.geometry, len(masks))
+    frames = style.render(masks, array).path(x_mm)
+    read = read_back(frames, x_mm, array=array, mapping=style.mapping, geometry=style.geometry)
     assert read.size >= len(masks)
     assert not read[len(masks) :].any()
     return read[: len(masks)]
@@ -45,15 +44,8 @@ def told(rng, masks, *, array, profile, mapping, geometry, tuning):
 @pytest.mark.parametrize("name", [name for name, each in MAPPINGS.items() if each.rows <= 6])
 def test_every_cell_of_a_line_on_the_stress2(name, texture, rng):
     masks = every_cell(rng)
-    read = told(
-        rng,
-        masks,
-        array=STRESS2.display,
-        profile=STRESS2.style.profile,
-        mapping=MAPPINGS[name],
-        geometry=STRESS2.style.geometry,
-        tuning=Tuning(texture=texture),
-    )
+    style = replace(STRESS2.style, mapping=MAPPINGS[name], tuning=Tuning(texture=texture))
+    read = told(rng, masks, style, STRESS2.display)
     np.testing.assert_array_equal(read, masks)
 
 
@@ -61,15 +53,8 @@ def test_every_cell_of_a_line_on_the_stress2(name, texture, rng):
 @pytest.mark.parametrize("dot_row", [1, 2, 3])
 def test_none_left_right_or_both_on_the_vbd(dot_row, texture, rng):
     masks = every_cell(rng)
-    read = told(
-        rng,
-        masks,
-        array=VBD.display,
-        profile=VBD.style.profile,
-        mapping=single_row(dot_row),
-        geometry=VBD.style.geometry,
-        tuning=Tuning(texture=texture),
-    )
+    style = replace(VBD.style, mapping=single_row(dot_row), tuning=Tuning(texture=texture))
+    read = told(rng, masks, style, VBD.display)
     left, right = cell(dot_row), cell(dot_row + 3)
     names = {0: "none", left: "left", right: "right", left | right: "both"}
     shown = [names[mask & (left | right)] for mask in masks]
@@ -81,13 +66,7 @@ def test_none_left_right_or_both_on_the_vbd(dot_row, texture, rng):
 @pytest.mark.parametrize("name", [name for name, each in MAPPINGS.items() if each.rows <= 6])
 def test_another_array_other_distances_and_little_contrast(name, profile, rng):
     masks = every_cell(rng)
-    read = told(
-        rng,
-        masks,
-        array=LATERO,
-        profile=profile,
-        mapping=MAPPINGS[name],
-        geometry=geometry.STANDARD,
-        tuning=Tuning(texture=0.5, contrast=0.2, cycles=3),
-    )
+    tuning = Tuning(texture=0.5, contrast=0.2, cycles=3)
+    style = BrailleStyle(profile, MAPPINGS[name], geometry.STANDARD, tuning)
+    read = told(rng, masks, style, LATERO)
     np.testing.assert_array_equal(read, masks)

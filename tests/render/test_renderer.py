@@ -8,14 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.render.scenes import cell, examples, frame_at, line, models
-from tests.shown import VBD_ARRAY, array_of, from_left
+from tests.shown import array_of, from_left
 from tests.tiers import by_tier
-from vbraille.braille import geometry
 from vbraille.render import (
     MAPPINGS,
     STRESS2,
     VBD,
-    Profile,
     Tuning,
     single_row,
 )
@@ -69,14 +67,8 @@ def test_the_stress2_samples_its_dots_at_ten_places_of_each_row(level):
 @pytest.mark.parametrize("level", [0.3, 1.0])
 @pytest.mark.parametrize("cycles", [1, 3, 5, 7, 9, 11])
 def test_the_polynomial_of_every_k_is_the_cosine(cycles, level):
-    renderer = from_left(
-        line(cell(1)),
-        array=ONE,
-        profile=Profile.RAISED_COSINE,
-        mapping=single_row(1),
-        geometry=geometry.STRESS2,
-        tuning=Tuning(texture=level, cycles=cycles),
-    )
+    style = STRESS2.style.replace(mapping=single_row(1), texture=level, cycles=cycles)
+    renderer = from_left(line(cell(1)), style, ONE)
     u_mm = np.linspace(-0.2, 2.8, 601)
     frames = [frame_at(renderer, u)[0, 0] for u in u_mm]
     expected = [raised_cosine(u, 2.6, level, cycles) for u in u_mm]
@@ -88,14 +80,7 @@ def test_a_mapping_that_needs_more_rows_than_there_are(mapping):
     needs = f"^mapping {mapping.name} needs {mapping.rows} actuator rows from row 0 on"
     says = f"{needs}; the array has 1$"
     with pytest.raises(ValueError, match=says):
-        from_left(
-            line(1),
-            array=VBD_ARRAY,
-            profile=VBD.style.profile,
-            mapping=mapping,
-            geometry=VBD.style.geometry,
-            tuning=VBD.style.tuning,
-        )
+        VBD.style.replace(mapping=mapping).render(line(1), VBD.display)
 
 
 # Where frames are put

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.render.scenes import JIT, Scene, cell, frame_at, line
-from tests.shown import array_of
-from vbraille.braille import geometry
+from tests.render.scenes import JIT, cell, frame_at, line
+from tests.shown import array_of, from_left
 from vbraille.render import VBD, Tuning
 
 PITCH_MM = 0.7
@@ -17,15 +16,8 @@ STEP_MM = 0.001 if JIT else 0.005
 
 def neighbours_over_a_dot(width_mm):
     """Deflections of two neighbours, and the strain between them, as the hand goes over a dot."""
-    scene = Scene(
-        line(cell(1)),
-        array=PAIR,
-        profile=VBD.style.profile,
-        mapping=VBD.style.mapping,
-        geometry=replace(geometry.VBD, dot_width_mm=width_mm),
-        tuning=Tuning(),
-    )
-    renderer = scene.renderer()
+    style = replace(VBD.style.replace(dot_width_mm=width_mm), tuning=Tuning())
+    renderer = from_left(line(cell(1)), style, PAIR)
     x_mm = np.arange(-PITCH_MM - 0.1, width_mm + 0.1, STEP_MM)
     left, right = np.array([frame_at(renderer, x)[0] for x in x_mm]).T
     return left, right, (right - left) / PITCH_MM

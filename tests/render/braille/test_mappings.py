@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -24,18 +26,9 @@ TABLES = {
 }
 
 
-def shown(masks, mapping, *, array=None, contrast_of=STRESS2, x_mm=0.0):
-    model = contrast_of
+def shown(masks, mapping, *, array=None, model=STRESS2, x_mm=0.0):
     array = array or array_of(mapping.rows, 10, 1.2, 1.8)
-    renderer = from_left(
-        masks,
-        array=array,
-        profile=model.style.profile,
-        mapping=mapping,
-        geometry=model.style.geometry,
-        tuning=model.style.tuning,
-    )
-    return frame_at(renderer, x_mm)
+    return frame_at(from_left(masks, replace(model.style, mapping=mapping), array), x_mm)
 
 
 @pytest.mark.parametrize("name", TABLES)
@@ -75,7 +68,7 @@ def test_a_single_dot_row(dot_row, dots):
     np.testing.assert_array_equal(mapping.idle(), [0.0])
     for dot, (_, side) in DOT_PLACES.items():
         centre_mm = side * VBD.style.geometry.dot_spacing_mm + VBD.style.geometry.dot_width_mm / 2
-        frame = shown(line(cell(dot)), mapping, array=VBD.display, contrast_of=VBD, x_mm=centre_mm)
+        frame = shown(line(cell(dot)), mapping, array=VBD.display, model=VBD, x_mm=centre_mm)
         assert frame[0, 0] == pytest.approx(float(dot in dots), abs=1e-12)
 
 

@@ -20,11 +20,12 @@ from tests.render.scene.twinstrokes import (
     cue_profile,
     cued_over,
     dots_deflection,
-    dots_mask,
+    dots_profile,
     drawn,
     drawn_mask,
     drawn_profile,
     is_inside,
+    placed,
 )
 from tests.render.scene.twinwaves import (
     ActuatorPlaces,
@@ -187,7 +188,7 @@ def plain(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Values:
         case StraightLine() | Circle() | Polygon() | PathShape():
             return shape(pattern, assets, at)
         case Dots():
-            return dots_deflection(_placed(pattern), pattern.dot, at)
+            return dots_deflection(placed(_dots(pattern), at), pattern.dot, at)
         case Label():
             return label_deflections(pattern, assets.written[pattern], at.x_mm, at.y_mm)
         case Group():
@@ -256,7 +257,7 @@ def _blended(group: Group, assets: Assets, at: ActuatorPlaces, parts: Sequence[V
     return (1 - alpha) * parts[0] + alpha * parts[1]
 
 
-def _placed(dots: Dots) -> list[PlacedDot]:
+def _dots(dots: Dots) -> list[PlacedDot]:
     return [PlacedDot(x, y) for x, y in dots.centers_mm]
 
 
@@ -290,7 +291,7 @@ def _own_mask(pattern: AnyPattern, assets: Assets, at: ActuatorPlaces) -> Values
                 return own
             return np.where(is_inside(pattern, at), 1.0, own)
         case Dots():
-            return dots_mask(_placed(pattern), pattern.dot, at)
+            return dots_profile(placed(_dots(pattern), at), pattern.dot, at, mask=True)
         case Label():
             return label_opacity(pattern, assets.written[pattern], at.x_mm, at.y_mm)
         case Group():

@@ -44,7 +44,6 @@ if TYPE_CHECKING:
         Across,
         Along,
         DotStyle,
-        Dotting,
         MovingCue,
         Stroke,
         VertexMarkers,
@@ -355,47 +354,6 @@ def dot_profile(dot: DotStyle, r: Values) -> Values:
     return profile(r, 2 * dot.radius_mm, dot.edge)
 
 
-def dots_deflection(
-    places: Sequence[PlacedDot],
-    dot: DotStyle,
-    at: ActuatorPlaces,
-    vertices: Vibration | None = None,
-) -> Values:
-    """Compute dots, of which the largest counts: 8.4.4.
-
-    Those on vertices may have a vibration of their own.
-    """
-    most = np.zeros(at.x_mm.shape)
-    for place in places:
-        r = np.hypot(*at.from_point(place.x_mm, place.y_mm))
-        up = dot.amplitude * textured(dot_profile(dot, r), r, 2 * dot.radius_mm, dot.across)
-        own = place.vertex and vertices is not None
-        most = np.maximum(most, vibrated(up, at, vertices if own else dot.vibration))
-    return most
-
-
-def dots_profile(places: Sequence[PlacedDot], dot: DotStyle, at: ActuatorPlaces) -> Values:
-    """Compute the profile of dots at full amplitude, which is what hides a fill."""
-    most = np.zeros(at.x_mm.shape)
-    for place in places:
-        r = np.hypot(*at.from_point(place.x_mm, place.y_mm))
-        most = np.maximum(most, dot_profile(dot, r))
-    return most
-
-
-def dots_mask(places: Sequence[PlacedDot], dot: DotStyle, at: ActuatorPlaces) -> Values:
-    """Compute the opacity of dots: their profile, or a texture of theirs where that is higher."""
-    most = np.zeros(at.x_mm.shape)
-    for place in places:
-        r = np.hypot(*at.from_point(place.x_mm, place.y_mm))
-        up = dot_profile(dot, r)
-        most = np.maximum(most, np.maximum(up, textured(up, r, 2 * dot.radius_mm, dot.across)))
-    return most
-
-
-# Dots that move: 9.3.3
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class SeenDot:
     """A dot as places see it.
@@ -415,14 +373,57 @@ class SeenDot:
     vertex: bool
 
 
+def placed(dots: Sequence[PlacedDot], at: ActuatorPlaces) -> list[SeenDot]:
+    """See dots that stand still."""
+    whole = np.ones(at.x_mm.shape)
+    return [SeenDot(np.hypot(*at.from_point(x, y)), whole, v) for x, y, v in dots]
+
+
+def dots_deflection(
+    dots: Sequence[SeenDot], dot: DotStyle, at: ActuatorPlaces, vertices: Vibration | None = None
+) -> Values:
+    """Compute dots, of which the largest counts: 8.4.4.
+
+    Those on vertices may have a vibration of their own.
+    """
+    most = np.zeros(at.x_mm.shape)
+    for one in dots:
+        up = textured(dot_profile(dot, one.r), one.r, 2 * dot.radius_mm, dot.across)
+        own = one.vertex and vertices is not None
+        swing = vertices if own else dot.vibration
+        most = np.maximum(most, vibrated(dot.amplitude * up * one.share, at, swing))
+    return most
+
+
+def dots_profile(
+    dots: Sequence[SeenDot], dot: DotStyle, at: ActuatorPlaces, *, mask: bool
+) -> Values:
+    """Compute the profile of dots at full amplitude, which hides a fill.
+
+    As a mask, which hides all, it is a texture of theirs where that is higher.
+    """
+    most = np.zeros(at.x_mm.shape)
+    for one in dots:
+        up = dot_profile(dot, one.r)
+        if mask:
+            up = np.maximum(up, textured(up, one.r, 2 * dot.radius_mm, dot.across))
+        most = np.maximum(most, up * one.share)
+    return most
+
+
+# Dots that move: 9.3.3
+
+
 def seen_dots(shape: AnyShape, at: ActuatorPlaces) -> list[SeenDot]:
-    """Place each dot of a shape whose dots move, one by one, where it is at the time."""
+    """Place each dot of a shape, one by one, where it is at the time."""
     assert shape.dots is not None
+    if not shape.dots.velocity_mm_s:
+        return placed(dots_of(shape), at)
     radius = shape.dots.dot.radius_mm
     moved = shape.dots.velocity_mm_s * at.moved_s(shape.dots.velocity_by)
     stay, rows = rows_of(shape)
     whole = np.ones(at.x_mm.shape)
-    found = [SeenDot(np.hypot(*at.from_point(x, y)), whole, v) for x, y, v in stay]
+    found = placed(stay, at)
     if isinstance(shape, Circle):
         (x, y), across = shape.center_mm, shape.radius_mm
         for still in dots_of(shape):
@@ -468,28 +469,6 @@ def _row_dots(row: DotRow, radius: float, moved: float, at: ActuatorPlaces) -> I
         yield SeenDot(np.hypot(dx, dy), share, False)
 
 
-def moving_dots(shape: AnyShape, dotting: Dotting, at: ActuatorPlaces) -> Values:
-    """Compute dots of which some move; the largest counts."""
-    dot, most = dotting.dot, np.zeros(at.x_mm.shape)
-    for one in seen_dots(shape, at):
-        up = textured(dot_profile(dot, one.r), one.r, 2 * dot.radius_mm, dot.across)
-        own = one.vertex and dotting.vertex_vibration is not None
-        swing = dotting.vertex_vibration if own else dot.vibration
-        most = np.maximum(most, vibrated(dot.amplitude * up * one.share, at, swing))
-    return most
-
-
-def moving_profile(shape: AnyShape, dot: DotStyle, at: ActuatorPlaces, *, mask: bool) -> Values:
-    """Compute what hides a fill of dots that move, or as a mask what hides all."""
-    most = np.zeros(at.x_mm.shape)
-    for one in seen_dots(shape, at):
-        up = dot_profile(dot, one.r)
-        if mask:
-            up = np.maximum(up, textured(up, one.r, 2 * dot.radius_mm, dot.across))
-        most = np.maximum(most, up * one.share)
-    return most
-
-
 # Shapes
 
 
@@ -497,10 +476,10 @@ def drawn(shape: AnyShape, at: ActuatorPlaces) -> Values:
     """Compute a shape's stroke or its dots, without its fill."""
     if shape.stroke is not None:
         return stroke_deflection(shape, shape.stroke, at)
-    if shape.dots is not None and shape.dots.velocity_mm_s:
-        return moving_dots(shape, shape.dots, at)
     if shape.dots is not None:
-        return dots_deflection(dots_of(shape), shape.dots.dot, at, shape.dots.vertex_vibration)
+        return dots_deflection(
+            seen_dots(shape, at), shape.dots.dot, at, shape.dots.vertex_vibration
+        )
     return np.zeros(at.x_mm.shape)
 
 
@@ -508,10 +487,8 @@ def drawn_profile(shape: AnyShape, at: ActuatorPlaces) -> Values:
     """Compute the profile of a shape's stroke or of its dots, at full amplitude."""
     if shape.stroke is not None:
         return stroke_profile(shape.stroke, coordinates(shape, at).across_mm)
-    if shape.dots is not None and shape.dots.velocity_mm_s:
-        return moving_profile(shape, shape.dots.dot, at, mask=False)
     if shape.dots is not None:
-        return dots_profile(dots_of(shape), shape.dots.dot, at)
+        return dots_profile(seen_dots(shape, at), shape.dots.dot, at, mask=False)
     return np.zeros(at.x_mm.shape)
 
 
@@ -525,8 +502,6 @@ def drawn_mask(shape: AnyShape, at: ActuatorPlaces) -> Values:
     if shape.stroke is not None:
         r = coordinates(shape, at).across_mm
         return np.maximum(up, textured(up, r, shape.stroke.width_mm, shape.stroke.across))
-    if shape.dots is not None and shape.dots.velocity_mm_s:
-        return moving_profile(shape, shape.dots.dot, at, mask=True)
     if shape.dots is not None:
-        return dots_mask(dots_of(shape), shape.dots.dot, at)
+        return dots_profile(seen_dots(shape, at), shape.dots.dot, at, mask=True)
     return up

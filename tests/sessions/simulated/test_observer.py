@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from tests.render.scenes import JIT
-from tests.shown import rendered
 from vbraille.render import (
     MAPPINGS,
     STRESS2,
     VBD,
+    BrailleStyle,
     Tuning,
     single_row,
 )
@@ -45,14 +45,8 @@ def moved(model, hand, cells, *, seed=1, late_s=(), kept=None, geometry=None):
 def explored(model, mapping, masks, time_s, x_mm, *, count_mm=None, levels=None, **changes):
     """What a hand is given of a line, through an encoder and a device of so many levels."""
     geometry = changes.pop("geometry", model.style.geometry)
-    renderer = rendered(
-        np.array(masks, np.uint8),
-        array=model.display,
-        profile=model.style.profile,
-        mapping=mapping,
-        geometry=geometry,
-        tuning=Tuning(**changes),
-    )
+    style = BrailleStyle(model.style.profile, mapping, geometry, Tuning(**changes))
+    renderer = style.render(np.array(masks, np.uint8), model.display)
     if count_mm:
         x_mm = np.round(x_mm / count_mm) * count_mm
     frames = renderer.path(x_mm)
