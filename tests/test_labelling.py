@@ -4,11 +4,9 @@ import pytest
 
 from vbraille.errors import InputError
 from vbraille.labelling import label_warnings, write_label, write_labels
-from vbraille.layout import wrap_text
 from vbraille.render import STRESS2_8X8
 from vbraille.scene.patterns import Circle, Fill, Group, Label, Tile
 from vbraille.scene.scene import Canvas, Scene
-from vbraille.translate import BrailleTable
 
 STYLE = STRESS2_8X8.style
 GEOMETRY = STYLE.geometry
@@ -33,8 +31,6 @@ def warned(*elements, **more):
 
 def test_a_label_is_translated_as_a_book_is():
     written = write_label(label("the 3 houses", table="en-ueb-g2.ctb"), STYLE)
-    (line,) = wrap_text("the 3 houses", BrailleTable("en-ueb-g2.ctb"), 40)
-    assert bytes(written.lines[0]) == line
     assert braille(written) == ["⠮⠀⠼⠉⠀⠓⠳⠎⠑⠎"]
     assert written.style is STYLE
 

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.errors import InputError
-from vbraille.layout import wrap_text
+from vbraille.layout import wrap
 from vbraille.render.labels import Written, corners_mm
 from vbraille.scene.patterns import Label, Tile
 from vbraille.scene.traversal import each
-from vbraille.translate import BrailleTable, find_table
+from vbraille.translate import Block, BrailleTable, find_table
 from vbraille.wording import count, printable
 
 if TYPE_CHECKING:
@@ -85,17 +85,17 @@ def write_label(label: Label, style: BrailleStyle, language: str = "en") -> Writ
         narrower than a cell.
     """
     table = _table(label.table or language)
-    cells = _cells_across(label, style)
-    lines = tuple(
-        np.frombuffer(masks, np.uint8)
-        for line in label.text.splitlines()
-        for masks in wrap_text(line, table, cells)
-    )
+    width = _cells_across(label, style)
+    lines: list[NDArray[np.uint8]] = []
+    for text in label.text.splitlines():
+        paragraph = Block(" ".join(text.split()))
+        cells = table.translate(paragraph.text)
+        lines += [line.masks for line in wrap(paragraph, cells, width or max(len(cells), 1))]
     while lines and not lines[-1].any():
-        lines = lines[:-1]
+        lines.pop()
     if not lines:
         raise InputError("text holds nothing that braille can show; write something else")
-    return Written(lines, style)
+    return Written(tuple(lines), style)
 
 
 def label_warnings(

@@ -3,13 +3,12 @@
 from itertools import pairwise
 from pathlib import Path
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.translate.reading import opened
-from vbraille.layout import Layout, wrap_text
+from vbraille.layout import Layout
 from vbraille.translate import Book, BrailleTable, Cells, choose_table, remarks, text_source
 
 TEXTS = Path(__file__).parents[2] / "texts"
@@ -189,15 +188,6 @@ def test_a_script_that_the_table_does_not_know_is_named_once():
     (note,) = book.source.notes()
     assert "Cyrillic" in note
     assert "‹language›" in note
-
-
-def test_a_text_of_a_program_s_own_is_wrapped():
-    table = TABLES["en-ueb-g2.ctb"]
-    whole = wrap_text("one  two\nthree", table)
-    assert len(whole) == 1
-    parts = wrap_text("one two three", table, 6)
-    assert b"\0".join(parts) == whole[0]
-    assert np.frombuffer(parts[0], np.uint8).size <= 6
 
 
 def test_capitals_and_addresses_that_are_cut_go_on_as_such():

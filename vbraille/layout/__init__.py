@@ -1,5 +1,5 @@
 """Cells on a virtual page: lines of any width, and files of them."""
 
-from vbraille.layout.lines import Layout, Line, wrap_text
+from vbraille.layout.lines import Layout, Line, wrap
 
-__all__ = ["Layout", "Line", "wrap_text"]
+__all__ = ["Layout", "Line", "wrap"]

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vbraille.braille.cells import UNICODE_BLANK, Cells, mask_of
-from vbraille.translate import Block, BlockKind
+from vbraille.translate import BlockKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
-    from vbraille.translate import Book, BrailleTable
+    from vbraille.translate import Block, Book, BrailleTable
 
 _LINES = 1 << 20  # more than a block has
 _SOLID = 0xFF  # in a search for blanks: a cell at which a line must not break
@@ -131,7 +131,6 @@ def wrap(
     width: int,
     indents: tuple[int, int] = (0, 0),
     table: BrailleTable | None = None,
-    before: bytes = b"",
 ) -> list[Line]:
     """Break a block into lines.
 
@@ -148,8 +147,6 @@ def wrap(
         Numbers of blank cells before the first line and before the others; less than the width.
     table
         Table that has the cells at which a word is cut; None where words are cut without a sign.
-    before
-        Cells that are put before the first line's own.
     """
     text, (indent, runover) = block.text, indents
     places = (cells.starts - block.start).tolist()
@@ -163,7 +160,7 @@ def wrap(
     word = len(solid[leading:].split(b"\0", 1)[0])
     start = leading - min(leading, width // 2, max(0, width - indent - word))
     lines: list[Line] = []
-    first = 0
+    first, before = 0, b""
     while start < end or not lines:
         full = max(start + width - indent - len(before), start + 1)
         last = bisect_right(ends, (full, end)) - 1
@@ -209,10 +206,8 @@ def _may_begin(before: str, after: str, is_blank: bool) -> bool:
     return not is_bound and _SPACELESS.search(before + after) is not None
 
 
-def _signed(cells: Cells, before: bytes, after: bytes) -> Cells:
-    """Cells of a line between those that say that a word was cut."""
-    if not before and not after:
-        return cells
+def _signed(cells: Cells, before: bytes, after: bytes = b"") -> Cells:
+    """Cells between others that stand for the nearest of their places."""
     masks = np.frombuffer(before + cells.masks.tobytes() + after, np.uint8)
     starts = np.pad(cells.starts, (len(before), len(after)), mode="edge")
     return Cells(masks, starts, cells.end)
@@ -275,14 +270,14 @@ class Layout:
         """Number of a line, from 1, counted from the start."""
         return self._count(blocks=line.block.number)[line.block.number] + line.index + 1
 
-    def uncounted(self, line: Line) -> int:
-        """Number of blocks before a line that its number needs, and that are not laid out yet."""
-        return max(line.block.number + 1 - len(self._before), 0)
+    @property
+    def counted(self) -> int:
+        """Number of blocks whose lines are counted, from the first on."""
+        return len(self._before) - 1
 
-    def count_on(self, blocks: int) -> bool:
-        """Count the lines of some more blocks; tell whether there were any."""
-        counted = len(self._before)
-        return len(self._count(blocks=counted + blocks - 1)) > counted
+    def count_on(self, blocks: int) -> None:
+        """Count the lines of some more blocks."""
+        self._count(blocks=self.counted + blocks)
 
     def count(self) -> int:
         """Number of lines in all; this lays out the whole book."""
@@ -303,11 +298,11 @@ class Layout:
             yield from self._lines(block)[::way]
 
     def _lay_out(self, block: Block) -> list[Line]:
-        cells, before = self.book.cells(block), b""
+        cells = self.book.cells(block)
         if block.kind is BlockKind.PAGE:
             if block.cells is not None or not len(cells):
                 return []  # the page has no number
-            before = _RULE[: max(self.width - len(cells), 0)]
+            cells = _signed(cells, _RULE[: max(self.width - len(cells), 0)])
         # Indents are less than half of a line, so that there is room for words.
         most = (self.width - 1) // (2 * STEP) * STEP
         first, others = _INDENTS.get(block.kind, (1, 0))
@@ -315,22 +310,4 @@ class Layout:
         depth = 0 if block.kind is BlockKind.HEADING else block.level
         indents = min((first + depth) * STEP, most), min((others + depth) * STEP, most)
         table = self.book.table if block.cells is None else None  # ready cells are cut as they are
-        return wrap(block, cells, self.width, indents, table, before)
-
-
-def wrap_text(text: str, table: BrailleTable, width: int | None = None) -> list[bytes]:
-    """Dot masks of the lines of a paragraph, which is one line without a width.
-
-    Parameters
-    ----------
-    text
-        Text of the paragraph.
-    table
-        Table by which it is translated.
-    width
-        Number of cells in a line.
-    """
-    words = " ".join(text.split())
-    cells = table.translate(words)
-    lines = wrap(Block(words), cells, width or max(len(cells), 1))
-    return [line.masks.tobytes() for line in lines]
+        return wrap(block, cells, self.width, indents, table)

@@ -201,7 +201,7 @@ class Reader(Surface):
 
     def is_counted(self, line: Line) -> bool:
         """Tell whether the number of a line is known, or soon found."""
-        return self.layout.uncounted(line) <= _MOST_UNCOUNTED
+        return line.block.number - self.layout.counted <= _MOST_UNCOUNTED
 
     def has(self, line: Line) -> bool:
         """Tell whether a line is among those that are read."""
@@ -386,7 +386,9 @@ class Reader(Surface):
         self.book.source.gather(_GATHERED)
         if self._counts:
             try:
-                self._counts = self.layout.count_on(_COUNTED)
+                counted = self.layout.counted
+                self.layout.count_on(_COUNTED)
+                self._counts = self.layout.counted > counted
             except VbrailleError:  # which is said once reading comes to it
                 self._counts = False
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING, BinaryIO, NamedTuple
@@ -195,11 +195,15 @@ def _pieces(block: Block) -> Iterator[Block]:
     if len(block.text) <= PIECE:
         yield block
         return
+    marks = block.marks
     for found in _PIECE.finditer(block.text):
         start, stop = found.span()
+        known = bisect_left(marks, stop, key=lambda mark: mark.start)  # a book may have many
+        begun, marks = marks[:known], marks[known:]
+        marks = (*(mark for mark in begun if mark.end > stop), *marks)
         piece = block.replace(
             text=found[0],
-            marks=cut_marks(block.marks, start, stop),
+            marks=cut_marks(begun, start, stop),
             cells=None if block.cells is None else block.cells[start:stop],
         )
         yield piece.replace(continues=True, anchors=(), entry=None) if start else piece
