@@ -5,7 +5,6 @@ from __future__ import annotations
 import posixpath
 from typing import TYPE_CHECKING
 
-from vbraille.errors import InputError
 from vbraille.translate.numbering import Level, Numbering, counted, whole
 from vbraille.translate.office import (
     Document,
@@ -46,11 +45,6 @@ class _Odt(Document):
     names = _NAMES
 
     def blocks_of(self, source: Source) -> Iterator[Block]:
-        if b"encryption-data" in self.archive.read_if("META-INF/manifest.xml"):
-            raise InputError(
-                f"{source.name} is locked with a password; open it with that and save it without "
-                f"one"
-            )
         root = self.archive.xml("content.xml")
         for part in (self.archive.xml("styles.xml", needed=False), root):
             self._read_styles(part)
@@ -85,8 +79,6 @@ class _Odt(Document):
                 if look.get("hidden"):
                     return
                 block = into.add(own.get("role") or "p")
-                if name == "h":  # tables of contents find it by its text
-                    block.add("a", id=element.text)
                 self.inner(element, block, look)
             case "list":
                 self._list(element, into, look)
@@ -104,7 +96,7 @@ class _Odt(Document):
                 for _ in range(self._times(element.get("number-columns-repeated"))):
                     self.inner(element, into.add("td", colspan=columns, rowspan=rows), look)
             case "a" | "span":
-                address = element.get("href").removesuffix("|outline")
+                address = element.get("href")
                 into = into.add("a", href=address) if address else into
                 self.inner(element, into, look | self._styled(element))
             case "s":
@@ -190,5 +182,5 @@ def _look_of(style: Element) -> Look:
         if properties.get("display"):
             look["hidden"] = "hidden" if properties.get("display") == "none" else ""
         look |= font_of(properties.get("font-name"))
-        look |= tag_of(properties.get("language"), properties.get("country"))
+        look |= tag_of(f"{properties.get('language')}-{properties.get('country')}")
     return look
