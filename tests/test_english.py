@@ -87,33 +87,3 @@ def test_docstrings_and_comments_name_the_person_or_thing_that_is_meant():
         if (found := NO_ONE.search(text))
     ]
     assert not faults, "\n".join(faults)
-
-
-def test_a_word_is_found_in_docstrings_and_comments_but_not_in_code(tmp_path):
-    path = tmp_path / "one.py"
-    path.write_text(
-        '"""Somebody\'s module."""\n\nnobody = "whoever"  # told to whoever asks\n',
-        encoding="utf-8",
-    )
-    found = [(line, NO_ONE.findall(text)) for line, text in english(path)]
-    assert found == [(1, ["Somebody"]), (3, ["whoever"])]
-
-
-def test_a_fragment_is_found_wherever_it_can_stand():
-    text = """Of it.
-
-    Parameters
-    ----------
-    x : int
-        Its place.
-    y, z
-        Numbers
-        Of something.
-
-    Raises
-    ------
-    ValueError
-        None of these.
-    """
-    found = [line for line in beginnings(text) if FRAGMENT.match(line)]
-    assert found == ["Of it.", "Its place.", "None of these."]

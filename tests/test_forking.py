@@ -42,13 +42,3 @@ def test_the_system_sees_no_difference(tmp_path, monkeypatch, leads):
     finally:
         os.umask(before)
     assert fork == new
-
-
-def test_what_ends_a_program_is_what_its_parent_sees(tmp_path):
-    assert program.run("--version").returncode == 0
-    assert program.run("page", tmp_path / "none").returncode == 2
-    process = program.start("simulate", "serial")
-    process.stdout.readline()
-    process.kill()
-    process.communicate(timeout=program.PATIENCE_S)
-    assert process.returncode == -signal.SIGKILL

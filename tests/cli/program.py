@@ -1,7 +1,5 @@
 """The program as its users have it: a process, perhaps at a terminal."""
 
-import array
-import fcntl
 import os
 import re
 import select
@@ -37,13 +35,12 @@ def start(*arguments, **options):
 
 
 class Terminal:
-    """A process at a terminal of its own: what it prints is read, keys are typed, bells counted."""
+    """A process at a terminal of its own: what it prints is read, keys are typed."""
 
     def __init__(self, *arguments, program=PROGRAM, **environment):
         self.master, self._slave = os.openpty()
         self.before = termios.tcgetattr(self._slave)
         self.printed = ""
-        self.bells = 0  # they ring beside what is printed, whenever they do
         self.process = AtTerminal(
             os.ttyname(self._slave),
             [*program, *map(str, arguments)],
@@ -56,27 +53,12 @@ class Terminal:
     def __exit__(self, *_):
         self.process.kill()
         self.process.wait()
-        self.hang_up()
+        os.close(self.master)
         os.close(self._slave)
-
-    def hang_up(self):
-        """Take the terminal away."""
-        if self.master is not None:
-            os.close(self.master)
-        self.master = None
 
     def type(self, keys):
         """Type keys."""
         os.write(self.master, keys.encode())
-
-    def type_apart(self, pieces):
-        """Type bytes, each piece when the process has read the one before."""
-        for piece in pieces:
-            os.write(self.master, piece)
-            waiting = array.array("i", [1])
-            while waiting[0]:
-                os.sched_yield()
-                fcntl.ioctl(self._slave, termios.FIONREAD, waiting)
 
     def until(self, pattern):
         """Read until something new that matches is printed; give the new part."""
@@ -86,10 +68,6 @@ class Terminal:
             assert time.monotonic() < end, f"{pattern!r} was not printed, but {self.printed!r}"
             new += self._read(1.0)
         return new
-
-    def silent(self, seconds):
-        """Whether nothing is printed for some time."""
-        return not self._read(seconds)
 
     def end(self):
         """Wait for the process's end; its exit code."""
@@ -111,7 +89,6 @@ class Terminal:
         if not select.select([self.master], [], [], seconds)[0]:
             return ""
         text = os.read(self.master, 65_536).decode("utf-8", "replace")
-        self.bells += text.count("\a")
         text = text.replace("\a", "")
         self.printed += text
         return text

@@ -144,8 +144,10 @@ def test_places_where_nothing_can_be_written(call, tmp_path, text):
     folder.mkdir()
     (tmp_path / ".busy.h5.partial").mkdir()
     for out in (
-        folder, tmp_path / "no" / "out.h5", "/proc/out.h5", text / "out.h5",
+        folder, "/proc/out.h5",
         tmp_path / f"{'a' * 300}.h5", tmp_path / "busy.h5", tmp_path / "out.txt", "",
     ):  # fmt: skip
         assert str(out) in refused(call("render", text, "--out", out))
+    for parent in (tmp_path / "no", text):
+        assert f"{parent};" in refused(call("render", text, "--out", parent / "out.h5"))
     assert list(folder.iterdir()) == []

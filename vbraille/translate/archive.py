@@ -128,7 +128,7 @@ class Archive:
         """
         locks = [lock for member, sign, lock in _LOCKS if sign in self.read_if(member)]
         listed = self.xml("META-INF/encryption.xml", needed=False)
-        ways = {method.get("Algorithm") for method in listed.iter("EncryptionMethod")}
+        ways = {method.get("algorithm") for method in listed.iter("encryptionmethod")}
         if ways.difference(_FONTS) or (locks and listed.name == "missing"):
             lock = [*locks, "a lock that it does not name"][0]
             raise InputError(

@@ -14,7 +14,7 @@ _FUNCTION = re.compile(
     "(arc|)(sin|cos|tan)|(sin|cos|tan)h|cot|sec|csc|log|ln|lg|exp|lim|max|min|sup|inf|det|dim|ker"
     "|gcd|mod|arg"
 )
-_ASIDE = re.compile("annotation|.*Pr$")
+_ASIDE = re.compile("annotation|.*pr$")
 _INVISIBLE = dict.fromkeys(map(ord, "\u2061\u2062\u2063\u2064\u200b"))
 _NAMES = names("formulas")
 _SIGNS, _ACCENTS, _FORMS = _NAMES["signs"], _NAMES["accents"], _NAMES["forms"]
@@ -37,18 +37,18 @@ def _tex(element: Element) -> str:
     if name == "t":
         return element.text
     parts = [each for each in element.elements if not _ASIDE.match(each.name)]
-    properties = (each for each in element.elements if each.name.endswith("Pr"))
+    properties = (each for each in element.elements if each.name.endswith("pr"))
     said = {each.name: each.get("val") for holder in properties for each in holder.elements}
     texts = [_tex(part) for part in parts]
     if name in ("mtable", "m"):
         rows = " \\\\ ".join(" & ".join(map(_tex, row.elements)) for row in parts)
         return f"\\begin{{matrix}} {rows} \\end{{matrix}}"
-    if name == "eqArr":
+    if name == "eqarr":
         return " \\\\ ".join(texts)
     if name in ("mfenced", "d"):
-        between = said.get("sepChr", "|") if name == "d" else element.get("separators", ",")[:1]
-        opening = said.get("begChr", element.get("open", "("))
-        return opening + between.join(texts) + said.get("endChr", element.get("close", ")"))
+        between = said.get("sepchr", "|") if name == "d" else element.get("separators", ",")[:1]
+        opening = said.get("begchr", element.get("open", "("))
+        return opening + between.join(texts) + said.get("endchr", element.get("close", ")"))
     accent = texts[1] if name == "mover" and len(texts) > 1 else said.get("chr", "\u0302")
     if name in ("mover", "acc") and accent in _ACCENTS:
         return f"{_ACCENTS[accent]}{{{''.join(texts[:1])}}}"

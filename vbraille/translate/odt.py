@@ -54,7 +54,6 @@ class _Odt(Document):
         root = self.archive.xml("content.xml")
         for part in (self.archive.xml("styles.xml", needed=False), root):
             self._read_styles(part)
-        self._boxes = {box.get("id"): box for box in root.iter("checkbox")}
         self._copies = 0
         for body in root.iter("body"):
             self.inner(body, self.body, self.usual)
@@ -116,10 +115,6 @@ class _Odt(Document):
                 self.refer(into, key)
             case "frame":
                 self._frame(element, into, look)
-            case "control":
-                box = self._boxes.get(element.get("control"), Element("input"))
-                checked = (box.get("current-state") or box.get("state")) == "checked"
-                into.say("☑" if checked else "☐") if box.name == "checkbox" else into.add("input")
             case name if name in self.names["drawn"] and not any(element.iter("p")):
                 into.add("canvas")
             case name:

@@ -172,7 +172,7 @@ class Document:
         return tree_blocks(source, self.body)
 
 
-def put_picture(into: Element, described: list[str], name: str = "img", label: str = "") -> None:
+def put_picture(into: Element, described: list[str], name: str) -> None:
     """Put the first text that describes a picture; without one, say what cannot be shown here."""
     told = next((text.strip() for text in described if text.strip()), "")
-    into.add("img" if told else name, title=told or label)
+    into.add("img" if told else name, title=told)

@@ -130,12 +130,12 @@ class _Tree:
         If the file is not what is parsed, or has more elements than a book has.
     """
 
-    def __init__(self, content: bytes, name: str, *, xml: bool, keep_case: bool = False) -> None:
+    def __init__(self, content: bytes, name: str, *, xml: bool) -> None:
         from lxml import etree
 
         self.root = Element("root")
         self.flattened = self._count = 0
-        self._name, self._keep_case = name, keep_case
+        self._name = name
         self._open = [self.root]
         self._text: list[str] = []  # in parts, as the parser cuts it
         target: Any = self
@@ -166,8 +166,8 @@ class _Tree:
         if len(self._open) > DEEPEST:
             self.flattened += 1
         else:
-            named = {self._local(key): value for key, value in attributes.items()}
-            child = Element(self._local(tag), named)
+            named = {_local(key): value for key, value in attributes.items()}
+            child = Element(_local(tag), named)
             self._open[-1].children.append(child)
         self._open.append(child)
 
@@ -182,13 +182,13 @@ class _Tree:
         self._open[-1].say("".join(self._text))
         self._text = []
 
-    def _local(self, name: str) -> str:
-        local = name.rpartition("}")[2].rpartition(":")[2]
-        return local if self._keep_case else local.lower()
+
+def _local(name: str) -> str:
+    return name.rpartition("}")[2].rpartition(":")[2].lower()
 
 
 def parse_xml(content: bytes, name: str) -> Element:
-    """Root of a file that must be XML; names keep their case.
+    """Root of a file that must be XML.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def parse_xml(content: bytes, name: str) -> Element:
     """
     if b"<!ENTITY" in content[:65_536]:
         raise InputError(f"{name} declares entities, which no book needs; get another copy")
-    return _Tree(content, name, xml=True, keep_case=True).root.elements[0]
+    return _Tree(content, name, xml=True).root.elements[0]
 
 
 def read_tree(

@@ -20,6 +20,7 @@ from tests.scene.openlatero.referencevalues import (
     point,
     profile,
     read_point,
+    ridged,
     shape,
     switch,
     vibrated,
@@ -143,7 +144,7 @@ def mask(node, place):
     width = covered(node)
     edge = number(None if stroke is None else stroke.find("ridge"), "edge_width", 1.0)
     if kind == "Line":
-        return shape(distance_to_line(node, place)[0], width, edge)
+        return shape(to_segment(place, *ends_of(node))[0], width, edge)
     if kind == "Circle":
         away, inside = distance_to_circle(node, place)[::2]
         if inside and switch(node.find("fill_texture"), "enable", False):
@@ -177,8 +178,7 @@ def wave(node, x, now, usual):
         x = warped(modulator, x)
     else:
         x -= speed * (now.travelled(speed, cycle))
-    u = (x / cycle) % 1.0
-    value = (1 - math.cos(2 * math.pi * u / (ridge / cycle))) / 2 if u <= ridge / cycle else 0.0
+    value = ridged(x, ridge, gap)
     return 1 - value if inverted else value
 
 
@@ -263,8 +263,7 @@ def under_bands(node, value, place, now):
     way, speed = math.radians(number(node, "direction", 0.0)), number(node, "velocity", 50.0)
     x, y = (place[n] - now.center[n] for n in (0, 1))
     along = x * math.cos(way) + y * math.sin(way) - speed * now.travelled(speed, ridge + 30.0)
-    u = along % (ridge + 30.0) / ridge
-    band = (1 - math.cos(2 * math.pi * u)) / 2 if u <= 1 else 0.0
+    band = ridged(along, ridge, 30.0)
     if cue == "vibration bands":
         return (1 - band) * value + band * now.swing(50.0)
     if cue == "blending bands":
@@ -300,9 +299,7 @@ def double(node, x, y, now):
             speed = number(motion, "velocity", 50.0)
             off = math.radians(number(motion, "direction", 0.0) - way)
             along -= speed * math.cos(off) * now.time_s
-        cycle = (ridge + gap) * times
-        u = (along % cycle) / (ridge * times)
-        value = (1 - math.cos(2 * math.pi * u)) / 2 if u <= 1 else 0.0
+        value = ridged(along, ridge * times, gap * times)
         values.append(value * number(node, f"{name}_amplitude", 1.0))
     return group(node, values, list)
 
@@ -333,9 +330,7 @@ def superposed(node, value, away, along, now, length=None, profiled=True):
     grating = motion.find("Grating")
     ridge, gap = number(grating, "ridge_size", 2.0), number(grating, "gap_size", 30.0)
     speed = number(grating, "velocity", number(motion, "velocity", 50.0))
-    cycle = ridge + gap
-    u = ((along - speed * now.travelled(speed, cycle)) / cycle) % 1.0 * cycle / ridge
-    band = up * ((1 - math.cos(2 * math.pi * u)) / 2 if u <= 1 else 0.0)
+    band = up * ridged(along - speed * now.travelled(speed, ridge + gap), ridge, gap)
     vibration = motion.find("vibration")
     swings = vibration is not None and switch(vibration, "enable", True)
     left = gain(vibration, now) if swings else 1.0
@@ -423,20 +418,18 @@ def filling(node, from_edge, place, now, inside):
 # Shapes
 
 
-def distance_to_line(node, place):
-    start, end = point(node, "start_point", (0.0, 0.0)), point(node, "end_point", SURFACE)
-    return to_segment(place, start, end)
+def ends_of(node):
+    return point(node, "start_point", (0.0, 0.0)), point(node, "end_point", SURFACE)
 
 
 def line(node, place, now):
-    away, along = distance_to_line(node, place)
+    start, end = ends_of(node)
+    away, along = to_segment(place, start, end)
     if has_dots(node):
-        start, end = point(node, "start_point", (0.0, 0.0)), point(node, "end_point", SURFACE)
         places = segment_dots(node, start, end)
         seen = sliding(places, place, node, now)
         value = dotted(node, 0.0, away, places, now, seen)
         return superposed(node, value, away, along, now, math.dist(places[0], places[-1]))
-    start, end = point(node, "start_point", (0.0, 0.0)), point(node, "end_point", SURFACE)
     return stroked(node, away, along, 0.0, now, length=math.dist(start, end))
 
 

@@ -23,6 +23,12 @@ class Now:
         return 0.5 + 0.5 * self.sign * math.sin(2 * math.pi * hertz * self.time_s)
 
 
+def ridged(x, ridge, gap):
+    """A grating, eq. 8.4, that begins with a ridge."""
+    u = x % (ridge + gap) / ridge
+    return (1 - math.cos(2 * math.pi * u)) / 2 if u <= 1 else 0.0
+
+
 def number(above, name, default):
     found = None if above is None else above.find(name)
     return default if found is None else float(found.text)

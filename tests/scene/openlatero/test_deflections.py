@@ -262,7 +262,7 @@ CASES = {
 }
 
 
-def places(canvas, count=80):
+def places(canvas, count):
     chance = random.Random(5)
     near = [(chance.uniform(12, 78), chance.uniform(12, 68)) for _ in range(count)]
     width, height = canvas.width_mm, canvas.height_mm
@@ -270,16 +270,21 @@ def places(canvas, count=80):
     return near + anywhere
 
 
+def opened(folder, text, count=80, *, as_shown=False):
+    """A scene as it is read, and places on it: together, and their x and y."""
+    path = folder / "old.gen"
+    path.write_text(text)
+    found = read_gen(path, as_shown=as_shown)
+    at = places(found.scene.canvas, count)
+    return found, at, *zip(*at, strict=True)
+
+
 @pytest.mark.parametrize("name", CASES)
 def test_a_scene_feels_as_there(name, tmp_path):
     text = CASES[name] if CASES[name].startswith("<?xml") else scene(CASES[name])
-    path = tmp_path / "old.gen"
-    path.write_text(text)
-    found = read_gen(path).scene
-    at = places(found.canvas)
-    x, y = zip(*at, strict=True)
+    found, at, x, y = opened(tmp_path, text)
     for parity, sign, time in ((0, 1.0, 0.0), (1, -1.0, 0.0137)):
-        ours = deflections(found, Assets(), x, y, parity, time)
+        ours = deflections(found.scene, Assets(), x, y, parity, time)
         theirs = reference.deflections(text, at, sign, time)
         assert np.ptp(theirs) > 0.1 or name.split(",")[0] in FLAT
         np.testing.assert_allclose(ours, theirs, atol=1e-6, rtol=0, err_msg=name)
@@ -331,13 +336,9 @@ MOVING = {
 @pytest.mark.parametrize("name", MOVING)
 def test_what_moves_by_itself_feels_as_there(name, tmp_path):
     text = scene(MOVING[name])
-    path = tmp_path / "old.gen"
-    path.write_text(text)
-    found = read_gen(path, as_shown=True).scene
-    at = places(found.canvas, 200)
-    x, y = zip(*at, strict=True)
+    found, at, x, y = opened(tmp_path, text, 200, as_shown=True)
     for parity, sign, time in ((0, 1.0, 0.0137), (1, -1.0, 1.903), (0, 1.0, 3.3)):
-        ours = deflections(found, Assets(), x, y, parity, time)
+        ours = deflections(found.scene, Assets(), x, y, parity, time)
         theirs = reference.deflections(text, at, sign, time)
         assert np.ptp(theirs) > 0.1
         np.testing.assert_allclose(ours, theirs, atol=2e-4, rtol=0, err_msg=name)
@@ -374,11 +375,7 @@ SAID = (
 def test_what_overwrites_feels_as_there_or_the_difference_is_said(name, tmp_path):
     under = circle(stroke(8) + fill(grating(angle=45)), "45,38", 20)
     text = scene(under, OVER[name], operation='<operation type="overwrite"/>')
-    path = tmp_path / "old.gen"
-    path.write_text(text)
-    found = read_gen(path, as_shown=True)
-    at = places(found.scene.canvas, 300)
-    x, y = zip(*at, strict=True)
+    found, at, x, y = opened(tmp_path, text, 300, as_shown=True)
     ours = deflections(found.scene, Assets(), x, y, 0, 0.013)
     theirs = reference.deflections(text, at, 1.0, 0.013)
     if np.abs(ours - theirs).max() > 2e-4:
