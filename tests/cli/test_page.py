@@ -134,7 +134,9 @@ def test_a_passage_in_another_language(call, tmp_path, options, written):
 
 
 def test_only_what_was_printed_is_counted(call, text):
-    text.write_text("one \U0001f600\n\ntwo\n\nthree \U0001f600\u0434\u4e2d\ue000\ue001 \U0001f600\n")
+    text.write_text(
+        "one \U0001f600\n\ntwo\n\nthree \U0001f600\u0434\u4e2d\ue000\ue001 \U0001f600\n"
+    )
     assert "1 character (" in call("page", text, "--lines", "1").err
     assert call("page", text, "--lines", "2").err == program.line_width(26)
     said = call("page", text).err
