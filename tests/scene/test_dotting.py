@@ -101,6 +101,14 @@ def test_a_circle_smaller_than_a_dot_has_one():
     assert [dot[:2] for dot in dots] == [(1, 0)]
 
 
+def test_dots_beside_a_sharp_corner_are_farther_apart():
+    triangle = Polygon(vertices_mm=((0, 0), (30, 0), (30, 30)), dots=DOTTING)
+    dots = dots_of(triangle)
+    # 3 / sin 45° along every edge: ⌊30/4.24⌋, ⌊30/4.24⌋ and ⌊42.4/4.24⌋ spaces.
+    assert len(dots) == 7 + 7 + 10
+    assert dots[1].x_mm == pytest.approx(30 / 7)
+
+
 def test_a_curve_of_many_edges_is_dotted_evenly_along_it():
     turns = [math.tau * n / 400 for n in range(400)]
     curve = tuple((10 * math.cos(a), 10 * math.sin(a)) for a in turns)
