@@ -12,7 +12,6 @@ from vbraille.translate.trees import Element, parse_xml
 from vbraille.wording import printable
 
 MOST_BYTES = 100_000_000  # of a file, or of a member when it is unpacked
-_ENCRYPTED = 0x1
 # Fonts are garbled in books that are open otherwise; no text is.
 _FONTS = (
     "http://www.idpf.org/2008/embedding",
@@ -20,13 +19,15 @@ _FONTS = (
     "http://ns.adobe.com/pdf/enc#rc",
 )
 # Files of locks, and what is in them; Adobe's has the name of one that tells who owns a book.
+# OpenDocument lists its parts with their encryption.
 _LOCKS = (
     ("META-INF/license.lcpl", b"{", "Readium LCP"),
     ("META-INF/sinf.xml", b"<", "Apple FairPlay"),
     ("META-INF/rights.xml", b"adept", "Adobe ADEPT"),
+    ("META-INF/manifest.xml", b"encryption-data", "a password"),
 )
 _FAULTS = (
-    zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError, ValueError
+    zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, OSError, ValueError
 )  # fmt: skip
 
 
@@ -43,7 +44,7 @@ class Archive:
     Raises
     ------
     InputError
-        If it is no ZIP archive, or damaged.
+        If it is no ZIP archive, or damaged, or the book is locked.
     """
 
     def __init__(self, stream: BinaryIO, name: str) -> None:
@@ -59,6 +60,12 @@ class Archive:
         self._alike: dict[str, list[zipfile.ZipInfo]] = {}
         for info in self._zip.infolist():
             self._alike.setdefault(_plain(info.filename), []).append(info)
+        locks = [lock for member, sign, lock in _LOCKS if sign in self.read_if(member)]
+        listed = self.xml("META-INF/encryption.xml", needed=False)
+        ways = {method.get("algorithm") for method in listed.iter("encryptionmethod")}
+        if ways.difference(_FONTS) or (locks and listed.name == "missing"):
+            lock = [*locks, "a lock that it does not name"][0]
+            raise InputError(f"{name} is locked by {lock}; get a copy of it without a lock")
 
     def find(self, name: str) -> zipfile.ZipInfo | None:
         """Member of a name, or the only one that differs from it in case or accents alone."""
@@ -77,11 +84,6 @@ class Archive:
         info, told = self.find(name), printable(name)
         if info is None:
             raise InputError(f"{self.name} lacks its part {told}; get the book again")
-        if info.flag_bits & _ENCRYPTED:
-            raise InputError(
-                f"{self.name} is locked by a password of the zip archive; unpack it with that "
-                f"and pack it again without one"
-            )
         if info.file_size > MOST_BYTES:
             raise InputError(
                 f"{self.name} has a part {told} of {info.file_size / 1e6:.0f} MB, more than "
@@ -92,7 +94,8 @@ class Archive:
                 return stream.read(MOST_BYTES)
         except _FAULTS as error:
             raise InputError(
-                f"{self.name} is damaged in its part {told} ({printable(str(error))}); get it again"
+                f"the part {told} of {self.name} cannot be read ({printable(str(error))}); "
+                f"get it again, or without its password"
             ) from None
 
     def read_if(self, name: str) -> bytes:
@@ -117,24 +120,6 @@ class Archive:
         if not needed and self.find(name) is None:
             return Element("missing")
         return parse_xml(self.read(name), f"{self.name} ({printable(name)})")
-
-    def check_unlocked(self) -> None:
-        """Check that a book is not locked.
-
-        Raises
-        ------
-        InputError
-            If it is; the message says by whose lock.
-        """
-        locks = [lock for member, sign, lock in _LOCKS if sign in self.read_if(member)]
-        listed = self.xml("META-INF/encryption.xml", needed=False)
-        ways = {method.get("algorithm") for method in listed.iter("encryptionmethod")}
-        if ways.difference(_FONTS) or (locks and listed.name == "missing"):
-            lock = [*locks, "a lock that it does not name"][0]
-            raise InputError(
-                f"{self.name} is locked by {lock}, so that only the seller's programs can read "
-                f"it; ask the seller or your library for a copy without a lock"
-            )
 
 
 def _plain(name: str) -> str:

@@ -54,7 +54,6 @@ class _Epub:
 
     def __init__(self, source: Source) -> None:
         self.source, self.archive = source, Archive(source.stream, source.name)
-        self.archive.check_unlocked()
         named = [file.get("full-path") for file in self._tree(_CONTAINER).iter("rootfile")]
         named = [posixpath.normpath(unquote(name)) for name in named]
         member = next(filter(self.archive.find, (*named, *_PACKAGES)), "")

@@ -247,7 +247,7 @@ class Walker:
 
     def _read(self, element: Element) -> None:
         """Read an element by its name."""
-        role, words, kind = self._role, element.words, element.get("type").lower()
+        role, words, kind = self._role, element.words, element.get("type")
         match element.name:
             case "br":
                 self._blank = False
@@ -291,9 +291,9 @@ class Walker:
                 return
             case "input" if kind == "checkbox" and "disabled" in element.attributes:
                 self._say("☒ " if "checked" in element.attributes else "☐ ")
-            case "input" if kind not in ("image", "hidden"):
+            case "input" if kind != "image":
                 self._unshown("form field", _label(element) or element.get("value"))
-            case "img" | "input" if kind != "hidden":
+            case "img" | "input":
                 self._img(element)
             case "svg":
                 self._svg(element)

@@ -11,7 +11,6 @@ if TYPE_CHECKING:
 
 BULLET = "• "
 MOST = 1_000  # columns, rows or blanks that are one
-_BOXES = frozenset("☐☑☒")  # bullets of lists of what is done
 _ROMAN = re.findall(r"([a-z]+)(\d+)", "m1000 cm900 d500 cd400 c100 xc90 l50 xl40 x10 ix9 v5 iv4 i1")
 
 
@@ -101,7 +100,7 @@ class Numbering:
         self.restart(at)
         self.counts[at] = number
         if level.form == "bullet" and level.text.strip():
-            return f"{level.text} " if level.text in _BOXES else BULLET
+            return BULLET
         if level.form in ("bullet", "none"):
             return ""
         label = level.text
@@ -114,7 +113,7 @@ class Numbering:
 
 def html_list(element: Element) -> Numbering:
     """Numbering of a list of HTML or DTBook."""
-    style = (element.get("style") + element.get("list-style-type")).replace(" ", "")
+    style = element.get("style")
     is_daisy = element.name == "list"
     kind = element.get("type", "pl") if is_daisy else element.name
     if "none" in style or kind == "pl":

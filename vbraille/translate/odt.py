@@ -5,14 +5,12 @@ from __future__ import annotations
 import posixpath
 from typing import TYPE_CHECKING
 
-from vbraille.errors import InputError
 from vbraille.translate.numbering import Level, Numbering, counted, whole
 from vbraille.translate.office import (
     Document,
     Look,
     font_of,
     heading,
-    put_picture,
     role_of,
     tag_of,
 )
@@ -46,11 +44,6 @@ class _Odt(Document):
     names = _NAMES
 
     def blocks_of(self, source: Source) -> Iterator[Block]:
-        if b"encryption-data" in self.archive.read_if("META-INF/manifest.xml"):
-            raise InputError(
-                f"{source.name} is locked with a password; open it with that and save it without "
-                f"one"
-            )
         root = self.archive.xml("content.xml")
         for part in (self.archive.xml("styles.xml", needed=False), root):
             self._read_styles(part)
@@ -64,10 +57,8 @@ class _Odt(Document):
             if style.get("family") == "paragraph":
                 self.usual |= _look_of(style)
         for style in part.iter("list-style", "outline-style"):
-            levels = [each for each in style.elements if each.get("level")]
-            self.lists[style.get("name")] = Numbering(
-                {whole(each.get("level")) - 1: _level_of(each) for each in levels}
-            )
+            levels = {whole(each.get("level")) - 1: _level_of(each) for each in style.elements}
+            self.lists[style.get("name")] = Numbering(levels)
         for style in part.iter("style"):
             self.styles[style.get("name")] = _look_of(style)
 
@@ -85,8 +76,6 @@ class _Odt(Document):
                 if look.get("hidden"):
                     return
                 block = into.add(own.get("role") or "p")
-                if name == "h":  # tables of contents find it by its text
-                    block.add("a", id=element.text)
                 self.inner(element, block, look)
             case "list":
                 self._list(element, into, look)
@@ -104,7 +93,7 @@ class _Odt(Document):
                 for _ in range(self._times(element.get("number-columns-repeated"))):
                     self.inner(element, into.add("td", colspan=columns, rowspan=rows), look)
             case "a" | "span":
-                address = element.get("href").removesuffix("|outline")
+                address = element.get("href")
                 into = into.add("a", href=address) if address else into
                 self.inner(element, into, look | self._styled(element))
             case "s":
@@ -139,8 +128,8 @@ class _Odt(Document):
         elif formula is not None:
             into.children.append(formula)
         else:
-            told = [named[name].text for name in ("desc", "title") if name in named]
-            put_picture(into, told, "object" if "object" in named else "img")
+            told = frame.said("desc") or frame.said("title")
+            into.add("object" if "object" in named and not told else "img", title=told)
 
     def _list(self, element: Element, into: Element, look: Look) -> None:
         """Read a list, with the style of the one around it unless it has another."""
@@ -180,15 +169,13 @@ def _look_of(style: Element) -> Look:
         for name, (tag, usual) in _NAMES["emphases"].items():
             value = properties.get(name)
             if value:
-                is_usual = value == usual or (value.isdigit() and int(value) < 600)
-                look[tag] = "" if is_usual else tag
-        place = properties.get("text-position").split(" ")[0].rstrip("%")
-        height = whole({"super": "1", "sub": "-1"}.get(place, place), 0)
-        if height:
-            tag = "sup" if height > 0 else "sub"
+                look[tag] = "" if value in usual.split() else tag
+        place = properties.get("text-position")
+        if place and not place.startswith("0"):
+            tag = "sub" if place.startswith(("sub", "-")) else "sup"
             look[tag] = tag
         if properties.get("display"):
             look["hidden"] = "hidden" if properties.get("display") == "none" else ""
         look |= font_of(properties.get("font-name"))
-        look |= tag_of(properties.get("language"), properties.get("country"))
+        look |= tag_of(f"{properties.get('language')}-{properties.get('country')}")
     return look

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from itertools import takewhile
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from vbraille.translate.archive import Archive
@@ -47,12 +46,6 @@ _FONTS = {
 }
 
 
-def signs(text: str, font: str) -> str:
-    """Text with the characters of a font of signs that stand in private places."""
-    known = _FONTS.get(font, {})
-    return _PRIVATE.sub(lambda found: known.get(ord(found[0]) & 0xFF, found[0]), text)
-
-
 def font_of(name: str) -> Look:
     """Look of text in a font of signs; nothing for other fonts."""
     font = name.lower().split(" ")[0]
@@ -72,10 +65,10 @@ def heading(level: int) -> Look:
     return {"role": f"h{min(level, 6)}" if level else ""}
 
 
-def tag_of(*parts: str) -> Look:
+def tag_of(tag: str) -> Look:
     """Look of text in a language as a word processor has it; nothing if that is none."""
-    known = list(takewhile(lambda part: part.lower() not in _NO_LANGUAGE, map(str.strip, parts)))
-    return {"lang": "-".join(known)} if known else {}
+    tag = re.sub("-(none)?$", "", tag.strip())
+    return {"lang": tag} if tag.lower() not in _NO_LANGUAGE else {}
 
 
 class Document:
@@ -151,7 +144,8 @@ class Document:
                 into = last
             else:
                 into = into.add(name, **attributes)
-        into.say(signs(text, look.get("font", "")))
+        known = _FONTS.get(look.get("font", ""), {})
+        into.say(_PRIVATE.sub(lambda found: known.get(ord(found[0]) & 0xFF, found[0]), text))
 
     def refer(self, into: Element, key: str) -> None:
         """Put a reference to a note; notes are numbered by their first references."""
@@ -170,9 +164,3 @@ class Document:
         most = max(self._spoken, key=self._spoken.__getitem__, default="")
         source.language = most or self.usual.get("lang") or about.said("language")
         return tree_blocks(source, self.body)
-
-
-def put_picture(into: Element, described: list[str], name: str) -> None:
-    """Put the first text that describes a picture; without one, say what cannot be shown here."""
-    told = next((text.strip() for text in described if text.strip()), "")
-    into.add("img" if told else name, title=told)
