@@ -105,7 +105,7 @@ def test_a_table_of_eight_dots_has_no_brf(call, text, choice, instead):
 @pytest.mark.parametrize(
     ("options", "line", "said_of_it"),
     [
-        ((), '  HI .<GR9N+ FACE.> "!', "marked in the text;"),
+        ((), '  HI .<GR9N+ FACE.> "!', "named in the text"),
         (("--undefined", "drop"), '  HI  "!', "left out"),
     ],
 )
@@ -134,11 +134,14 @@ def test_a_passage_in_another_language(call, tmp_path, options, written):
 
 
 def test_only_what_was_printed_is_counted(call, text):
-    text.write_text("one \U0001f600\n\ntwo\n\nthree \U0001f600\u0434\u4e2d\ue000 \U0001f600\n")
+    text.write_text(
+        "one \U0001f600\n\ntwo\n\nthree \U0001f600\u0434\u4e2d\ue000\ue001 \U0001f600\n"
+    )
     assert "1 character (" in call("page", text, "--lines", "1").err
     assert call("page", text, "--lines", "2").err == program.line_width(26)
     said = call("page", text).err
-    assert "6 characters (3 of U+1F600 grinning face, 1 of " in said
+    assert "3 characters (3 of U+1F600 grinning face), named" in said
+    assert "4 characters (1 of " in said
     assert "1 of others" in said
 
 

@@ -96,27 +96,9 @@ def test_a_line_too_short_for_two_has_one():
     assert [dot[:2] for dot in dots] == [(1, 1)]
 
 
-@pytest.mark.parametrize("radius", [1.6, 33.3])
-def test_a_circle_has_as_many_dots_as_there_is_room_for(radius):
-    dots = dots_of(Circle(center_mm=(5, 6), radius_mm=radius, dots=DOTTING))
-    assert len(dots) == math.floor(math.pi / math.asin(3 / (2 * radius)))
-    assert dots[0][:2] == (5 + radius, 6)
-    turn = math.tau / len(dots)
-    for n, dot in enumerate(dots):
-        assert math.dist(dot[:2], (5, 6)) == pytest.approx(radius)
-        assert math.cos(math.atan2(dot.y_mm - 6, dot.x_mm - 5) - n * turn) == pytest.approx(1)
-
-
 def test_a_circle_smaller_than_a_dot_has_one():
     dots = dots_of(Circle(center_mm=(0, 0), radius_mm=1, dots=DOTTING))
     assert [dot[:2] for dot in dots] == [(1, 0)]
-
-
-def test_a_polygon_has_dots_on_its_vertices_and_says_so():
-    square = Polygon(vertices_mm=((0, 0), (10, 0), (10, 10), (0, 10)), dots=DOTTING)
-    dots = dots_of(square)
-    assert len(dots) == 4 * 3
-    assert [dot[:2] for dot in dots if dot.vertex] == list(square.vertices_mm)
 
 
 def test_dots_beside_a_sharp_corner_are_farther_apart():

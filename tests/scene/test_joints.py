@@ -6,10 +6,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from vbraille.scene.geometry import joint, marker_half_angle_rad, places_along_mm
-from vbraille.scene.patterns import Polygon, Stroke, VertexMarkers
-
-SQUARE = ((0, 0), (30, 0), (30, 30), (0, 30))
+from vbraille.scene.geometry import joint, marker_half_angle_rad
+from vbraille.scene.patterns import VertexMarkers
 
 
 def corner(angle, radius, before=50.0, after=50.0, turned=0.0, left=1):
@@ -65,35 +63,6 @@ def test_edges_that_go_on_or_back_have_a_pivot_all_the_same(angle):
     assert math.isfinite(math.dist(found.pivot_mm, (7, 3)))
     assert found.arc_mm == pytest.approx(0 if angle > 1 else math.pi * found.radius_mm, abs=1e-9)
     assert found.radius_mm == pytest.approx(2.0 if angle > 1 else 0.0, abs=1e-9)
-
-
-def test_places_along_a_polygon_are_those_of_its_corners():
-    straight = Polygon(vertices_mm=SQUARE, join="straight", stroke=Stroke(width_mm=4))
-    assert places_along_mm(straight) == (0, 30, 60, 90, 120)
-    rounded = Polygon(vertices_mm=SQUARE, stroke=Stroke(width_mm=4))
-    edge = 26 + math.pi
-    assert places_along_mm(rounded) == pytest.approx([n * edge for n in range(5)])
-
-
-@pytest.mark.parametrize(
-    ("span", "degrees"), [("square", 120), ("edges", 60), ("angle", 30), ("arc", None)]
-)
-def test_markers_span_the_angle_that_they_say(span, degrees):
-    theta = math.radians(60)
-    half = marker_half_angle_rad(VertexMarkers(span=span), theta)
-    if degrees is None:
-        # By the places: the stroke's outer corners beside the vertex, seen from the pivot.
-        found = corner(theta, 2.0)
-        ends = []
-        for at in (0.0, theta):
-            along = (found.pivot_mm[0] - 7) * math.cos(at) + (found.pivot_mm[1] - 3) * math.sin(at)
-            foot = (7 + along * math.cos(at), 3 + along * math.sin(at))
-            out = (foot[0] - found.pivot_mm[0], foot[1] - found.pivot_mm[1])
-            end = (7 + out[0] - found.pivot_mm[0], 3 + out[1] - found.pivot_mm[1])
-            ends.append(math.atan2(end[1], end[0]))
-        degrees = math.degrees(abs(ends[1] - ends[0]))
-        degrees = min(degrees, 360 - degrees)
-    assert math.degrees(2 * half) == pytest.approx(degrees)
 
 
 def test_a_marker_is_no_wider_than_the_wider_of_what_edges_allow():

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from vbraille.braille.cells import Cells
 from vbraille.translate.blocks import MarkKind, cut_marks
-from vbraille.translate.spellings import Kind, Undefined
+from vbraille.translate.spellings import Kind
 from vbraille.translate.tables import BrailleTable, table_of
 from vbraille.translate.undefined import Written
 from vbraille.wording import count, setting
@@ -145,12 +145,6 @@ def _between_signs(own: BrailleTable, part: Written, tag: str, following: str) -
     return part
 
 
-_WAYS = {
-    Undefined.MARK: "marked in the text",
-    Undefined.DROP: "left out",
-}
-
-
 def remarks(book: Book, blocks: Iterable[Block]) -> list[str]:
     """Sentences on what of some blocks cannot be shown, and on what the table cannot write."""
     unshown: Counter[str] = Counter()
@@ -159,23 +153,12 @@ def remarks(book: Book, blocks: Iterable[Block]) -> list[str]:
         unshown.update(mark.target for mark in block.marks if mark.kind is MarkKind.UNSHOWN)
         for (kind, part), number in book.otherwise.get(block.number, {}).items():
             written[kind][part] += number
-    table, said = book.table, []
-    unknown, plain = written[Kind.MARKED] + written[Kind.NAME], written[Kind.PLAIN]
-    if unknown and table is not None:
-        said.append(
-            f"the table {table.name} does not know {_characters(unknown)}, "
-            f"{_WAYS[table.undefined]}; {setting('undefined')} chooses mark or drop"
-        )
-    if plain and table is not None:
-        said.append(
-            f"the table {table.name} has no sign for {_characters(plain)}, written as what is "
-            f"nearest"
-        )
-    if words := list(written[Kind.UNENDING]):
-        said.append(
-            f"liblouis does not come to an end with {count(len(words), 'word')} "
-            f"({', '.join(map(repr, words[:3]))}), marked in the text"
-        )
+    table = book.table.name if book.table else ""
+    said = [
+        f"the table {table} {kind.format(_parts(kind, written[kind]))}"
+        for kind in Kind
+        if kind in written
+    ]
     if unshown:
         things = [count(number, thing) for thing, number in unshown.most_common()]
         said.append(
@@ -185,16 +168,17 @@ def remarks(book: Book, blocks: Iterable[Block]) -> list[str]:
     return said
 
 
-def _characters(found: Counter[str]) -> str:
-    """Number of characters, and the names of the most frequent."""
-    most = found.most_common(3)
-    named = [
-        f"{number} of U+{ord(part[0]):04X} {unicodedata.name(part[0], '').lower()}".strip()
-        for part, number in most
-    ]
-    if others := found.total() - sum(number for _, number in most):
+def _parts(kind: Kind, found: Counter[str]) -> str:
+    """Number of words or characters, and the most frequent of them."""
+    named, others = [], found.total()
+    for part, number in found.most_common(3):
+        letter = f"U+{ord(part[0]):04X} {unicodedata.name(part[0], '').lower()}".strip()
+        named.append(f"{number} of {repr(part) if kind is Kind.UNENDING else letter}")
+        others -= number
+    if others:
         named.append(f"{others} of others")
-    return f"{count(found.total(), 'character')} ({', '.join(named)})"
+    thing = "word" if kind is Kind.UNENDING else "character"
+    return f"{count(found.total(), thing)} ({', '.join(named)})"
 
 
 def _primary(tag: str) -> str:

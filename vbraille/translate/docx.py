@@ -11,7 +11,6 @@ from vbraille.translate.office import (
     Look,
     font_of,
     heading,
-    put_picture,
     role_of,
     tag_of,
 )
@@ -79,10 +78,13 @@ class _Docx(Document):
         match element.name:
             case "p":
                 self._paragraph(element, into)
-            case "tbl":
-                self._table(element, into.add("table"))
+            case "tbl":  # whose look may say that its first row is its head
+                said = _find(element, "tblpr/tbllook")
+                first = said.get("firstrow", str(_hexadecimal(said.get("val")) >> 5 & 1))
+                self.inner(element, into.add("table"), {"head": "" if first in _OFF else first})
             case "tr":
                 is_head = _value(element, "trpr/tblheader", "0") not in _OFF
+                is_head |= bool(look.get("head")) and not into.children
                 line = (into.add("thead") if is_head else into).add("tr")
                 before = _value(element, "trpr/gridbefore")
                 if whole(before, 0) > 0:
@@ -153,15 +155,6 @@ class _Docx(Document):
         if block.children:
             into.children.append(block)
 
-    def _table(self, element: Element, table: Element) -> None:
-        """Read a table, whose first row may be its head by the table's look."""
-        self.inner(element, table, {})
-        look = _find(element, "tblpr/tbllook")
-        first = look.get("firstrow", str(_hexadecimal(look.get("val")) >> 5 & 1))
-        if first not in _OFF and len(table.children) > 1:
-            head = Element("thead")
-            head.children, table.children = table.children[:1], [head, *table.children[1:]]
-
     def _field(self, mark: str, into: Element) -> None:
         """Begin a field, its text, or its end."""
         if mark == "begin":
@@ -180,7 +173,8 @@ class _Docx(Document):
         name = "img" if any(element.iter("pic", "imagedata")) else "canvas"
         name = "object" if element.name == "object" else name
         described = element.iter("docpr", "shape")
-        put_picture(into, [each.get("descr") or each.get("alt") for each in described], name)
+        told = " ".join(each.get("descr") or each.get("alt") for each in described).strip()
+        into.add("img" if told else name, title=told)
 
 
 def _lists_of(root: Element) -> dict[str, Numbering]:

@@ -100,12 +100,11 @@ class _Epub:
             Types or roles of the list in the nav, and its name in the NCX.
         """
         items = self.items.values()
-        holders = [item for item in items if "nav" in item.get("properties").split()]
-        for item in [*holders, *(item for item in items if _kind(item) == _NCX)]:
+        navs = [item for item in items if "nav" in item.get("properties").split()]
+        for item in [*navs, *(item for item in items if _kind(item) == _NCX)]:
             for listed in self._tree(item.get("href")).iter("nav", "navmap", "pagelist"):
-                is_it = {listed.name, *listed.words}.intersection(kinds)
-                found = list(_entries(listed, item.get("href"))) if is_it else []
-                if found:
+                found = list(_entries(listed, item.get("href")))
+                if found and {listed.name, *listed.words}.intersection(kinds):
                     return dict(reversed(found))  # the first of an anchor counts
         return {}
 

@@ -418,7 +418,7 @@ class Walker:
     def _page(self, element: Element) -> None:
         """A page of print begins."""
         told = _label(element) or " ".join(element.text.split())
-        told = re.sub(r"^page ", "", told, flags=re.I).strip(" .")
+        told = re.sub(r"(?i)^page | *\.$", "", told)
         anchors = (self._prefix + element.get("id"),) if element.get("id") else ()
         page = Block(told, BlockKind.PAGE, anchors=anchors)
         if self._text:

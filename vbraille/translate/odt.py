@@ -11,7 +11,6 @@ from vbraille.translate.office import (
     Look,
     font_of,
     heading,
-    put_picture,
     role_of,
     tag_of,
 )
@@ -58,10 +57,8 @@ class _Odt(Document):
             if style.get("family") == "paragraph":
                 self.usual |= _look_of(style)
         for style in part.iter("list-style", "outline-style"):
-            levels = [each for each in style.elements if each.get("level")]
-            self.lists[style.get("name")] = Numbering(
-                {whole(each.get("level")) - 1: _level_of(each) for each in levels}
-            )
+            levels = {whole(each.get("level")) - 1: _level_of(each) for each in style.elements}
+            self.lists[style.get("name")] = Numbering(levels)
         for style in part.iter("style"):
             self.styles[style.get("name")] = _look_of(style)
 
@@ -131,8 +128,8 @@ class _Odt(Document):
         elif formula is not None:
             into.children.append(formula)
         else:
-            told = [named[name].text for name in ("desc", "title") if name in named]
-            put_picture(into, told, "object" if "object" in named else "img")
+            told = frame.said("desc") or frame.said("title")
+            into.add("object" if "object" in named and not told else "img", title=told)
 
     def _list(self, element: Element, into: Element, look: Look) -> None:
         """Read a list, with the style of the one around it unless it has another."""
@@ -172,12 +169,10 @@ def _look_of(style: Element) -> Look:
         for name, (tag, usual) in _NAMES["emphases"].items():
             value = properties.get(name)
             if value:
-                is_usual = value == usual or (value.isdigit() and int(value) < 600)
-                look[tag] = "" if is_usual else tag
-        place = properties.get("text-position").split(" ")[0].rstrip("%")
-        height = whole({"super": "1", "sub": "-1"}.get(place, place), 0)
-        if height:
-            tag = "sup" if height > 0 else "sub"
+                look[tag] = "" if value in usual.split() else tag
+        place = properties.get("text-position")
+        if place and not place.startswith("0"):
+            tag = "sub" if place.startswith(("sub", "-")) else "sup"
             look[tag] = tag
         if properties.get("display"):
             look["hidden"] = "hidden" if properties.get("display") == "none" else ""

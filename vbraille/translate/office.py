@@ -164,9 +164,3 @@ class Document:
         most = max(self._spoken, key=self._spoken.__getitem__, default="")
         source.language = most or self.usual.get("lang") or about.said("language")
         return tree_blocks(source, self.body)
-
-
-def put_picture(into: Element, described: list[str], name: str) -> None:
-    """Put the first text that describes a picture; without one, say what cannot be shown here."""
-    told = next((text.strip() for text in described if text.strip()), "")
-    into.add("img" if told else name, title=told)

@@ -11,6 +11,7 @@ from unicodedata import category, combining, decimal, name, normalize
 from vbraille.braille.cells import UNICODE_BLANK
 from vbraille.braille.spelling import LETTERS, to_braille
 from vbraille.translate.liblouis import cells_of
+from vbraille.wording import setting
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,12 +33,13 @@ class Undefined(StrEnum):
 
 
 class Kind(StrEnum):
-    """Way in which a part of a text is written that the table leaves undefined."""
+    """Way in which a part of a text is written otherwise than it stands, in words on the table."""
 
-    PLAIN = "a plain spelling, or without accents"
-    NAME = "by its name"
-    MARKED = "a marker"
-    UNENDING = "a marker, for liblouis does not come to an end"
+    MARKED = f"does not know {{}}, marked in the text; {setting('undefined')} drop leaves them out"
+    DROPPED = "does not know {}, left out"
+    NAME = "does not know {}, named in the text"
+    UNENDING = "does not come to an end with {}, marked in the text"
+    PLAIN = "has no sign for {}, written as what is nearest"
 
 
 FULL_CELLS = "⠿⠿⠿"
@@ -125,7 +127,6 @@ def spellings(part: str, table: str, how: Undefined) -> list[tuple[Kind | None, 
     ]
     equal = (normalize("NFC", part), normalize("NFD", part))
     dots, plain = _small_forms(part, table)
-    dropped = [""] if how is Undefined.DROP else []
     markers = [
         text
         for marker in ("[?]", "(?)", "?", FULL_CELLS)
@@ -135,7 +136,7 @@ def spellings(part: str, table: str, how: Undefined) -> list[tuple[Kind | None, 
     for kind, texts in (
         (None, [*as_it_is, *equal, *_compositions(part), *dots]),
         (Kind.PLAIN, [*plain, *_plain_spellings(part), *_bare_letters(part)]),
-        (Kind.MARKED, dropped),
+        (Kind.DROPPED, [""] if how is Undefined.DROP else []),
         (Kind.NAME, _bracketed(named) if named else []),
         (Kind.MARKED, markers),
     ):

@@ -16,7 +16,6 @@ from vbraille.scene.patterns import (
     LinearGrating,
     StraightLine,
     Stroke,
-    Tile,
     Uniform,
     UniformVibration,
     Vibration,
@@ -61,23 +60,6 @@ def test_neighbours_vibrate_against_each_other():
     shown = frame(compiled(UniformVibration(frequency_hz=20.0)), time_s=0.0125)
     row, column = np.mgrid[:8, :8]
     assert np.allclose(shown, (row + column + 1) % 2)
-
-
-def test_a_line_hides_what_is_beneath_it():
-    line = StraightLine(start_mm=(0.0, 40.0), end_mm=(100.0, 40.0), stroke=Stroke(width_mm=4.0))
-    shown = frame(compiled(Uniform(level=0.25), line))
-    _, y = actuators()
-    across = np.abs(y - 40)
-    profile = np.where(across < 1, 1.0, 0.5 + 0.5 * np.cos(np.pi * np.minimum(across - 1, 1)))
-    assert np.allclose(shown, profile + 0.25 * (1 - profile), atol=1e-9)
-
-
-def test_a_tile_is_repeated_in_all_directions():
-    grating = LinearGrating(ridge_mm=10.0)
-    tile = Tile(width_mm=5.0, height_mm=3.0, origin_mm=(1.0, 2.0), part=grating)
-    shown = frame(compiled(tile))
-    x, _ = actuators()
-    assert np.allclose(shown, 0.5 - 0.5 * np.cos(2 * np.pi * np.mod(x - 1, 5) / 10), atol=1e-9)
 
 
 def test_beyond_the_canvas_there_is_nothing():

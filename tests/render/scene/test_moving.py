@@ -79,36 +79,6 @@ def test_dots_on_vertices_stay():
     assert len(rows) == 4
 
 
-def at_band(shape, way, **keys):
-    """Deflection in the middle of a band of a cue, on the path's middle line."""
-    shown = replace(shape, cue=replace(shape.cue, way=way, velocity_mm_s=0.0, **keys))
-    return along(shown, 0.0, [22.0], 30)[0]
-
-
-@pytest.mark.parametrize("shape", [CUED, THIN])
-def test_a_cue_is_felt_in_four_ways(shape):
-    assert at_band(shape, "blend") == pytest.approx(0.5)
-    assert at_band(shape, "blend", level=0.2) == pytest.approx(0.2)
-    assert at_band(shape, "mask") == pytest.approx(0)
-    assert at_band(shape, "vibrate") == pytest.approx(0.5)  # a swing at its beginning
-    assert at_band(shape, "add", share=0.3, vibration=Vibration()) == pytest.approx(0.85)
-    assert along(shape, 0.0, [26.0], 30)[0] == pytest.approx(1)
-
-
-def test_a_cue_as_wide_as_the_stroke_ends_with_it_and_a_wider_one_goes_on_beside_it():
-    added = {"way": "add", "velocity_mm_s": 0.0, "share": 0.5}
-    normal, wider = (replace(one, cue=replace(one.cue, **added)) for one in (CUED, THIN))
-    assert along(normal, 0.0, [22.0], 34.1)[0] == 0
-    assert along(normal, 0.0, [26.0], 30)[0] == pytest.approx(0.5)
-    assert along(wider, 0.0, [22.0], 33)[0] == pytest.approx(0.5)
-    assert along(wider, 0.0, [22.0], 35.1)[0] == 0
-    # Past an end it fades over half of the stroke's width.
-    bands = replace(wider, cue=replace(wider.cue, ridge_mm=60, gap_mm=0))
-    beside = along(bands, 0.0, [40.001, 40.75, 41.6], 33)
-    assert beside[1] == pytest.approx(beside[0] / 2, rel=0.05)
-    assert beside[2] == 0
-
-
 @pytest.mark.parametrize("shape", [LINE, SQUARE, WINDING, ROUND, RING, CUED, THIN, CUTS])
 def test_what_moves_stays_within_its_bounds_and_never_jumps(shape):
     program = compile_scene(scene_of(shape), STRESS2_8X8_ARRAY)

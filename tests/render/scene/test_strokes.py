@@ -10,7 +10,6 @@ from vbraille.scene.patterns import (
     Circle,
     Dots,
     DotStyle,
-    Dotting,
     Fill,
     Polygon,
     StraightLine,
@@ -21,12 +20,6 @@ from vbraille.scene.patterns import (
 )
 
 SQUARE = ((0, 0), (30, 0), (30, 30), (0, 30))
-
-
-# Profiles: 8.7-8.10, 6.1
-
-
-# Coordinates: 8.15-8.19
 
 
 # Strokes: 8.11-8.14
@@ -47,23 +40,6 @@ def test_a_texture_along_cuts_into_the_stroke():
     np.testing.assert_allclose(felt(whole, x), [0, 0.8, 0.4], atol=1e-12)
     np.testing.assert_allclose(felt(whole, x, 3), [0.8, 0.8, 0.8], atol=1e-12)
     np.testing.assert_allclose(felt(line, x, 3), [0, 0.8, 0.4], atol=1e-12)
-
-
-def test_what_is_up_vibrates_or_what_is_down():
-    along = Along(ridge_mm=2, gap_mm=1)
-    x = np.array([1, 2.5])  # in a cut, and between
-    for of, low, high in (("high", [0, 0], [0, 1]), ("low", [1, 1], [0, 1])):
-        stroke = Stroke(width_mm=8, along=along, vibration=Vibration(of=of))
-        line = StraightLine(start_mm=(0, 0), end_mm=(30, 0), stroke=stroke)
-        np.testing.assert_allclose(felt(line, x, time_s=0.015), low, atol=1e-9)
-        np.testing.assert_allclose(felt(line, x, time_s=0.005), high, atol=1e-9)
-
-
-def test_an_outlined_stroke_is_two_lines():
-    line = StraightLine(
-        start_mm=(0, 0), end_mm=(30, 0), stroke=Stroke(width_mm=8, edge_mm=1, outlined=True)
-    )
-    np.testing.assert_allclose(felt(line, 15, [0, 2, 3, 3.5, 4]), [0, 0, 1, 0.5, 0], atol=1e-12)
 
 
 # Markers: figs. 8.19, 8.20
@@ -91,23 +67,6 @@ def test_a_marker_takes_the_place_of_the_texture_within_the_profile():
 # Fills: fig. 8.21
 
 
-def test_a_fill_begins_at_the_strokes_inner_edge_after_its_gap():
-    fill = Fill(texture=Uniform(level=0.8), gap_mm=2, fade_mm=1)
-    disc = Circle(center_mm=(0, 0), radius_mm=20, stroke=Stroke(width_mm=4), fill=fill)
-    np.testing.assert_allclose(
-        felt(disc, [20, 17, 16, 15.5, 15, 0, 23]), [1, 0, 0, 0.4, 0.8, 0.8, 0], atol=1e-12
-    )
-    bare = Circle(center_mm=(0, 0), radius_mm=20, fill=Fill(texture=Uniform(), fade_mm=0))
-    np.testing.assert_allclose(felt(bare, [0, 19.99, 20.01]), [1, 1, 0])
-    dotted = Circle(
-        center_mm=(0, 0),
-        radius_mm=20,
-        dots=Dotting(dot=DotStyle(radius_mm=1.5)),
-        fill=Fill(texture=Uniform(), gap_mm=0, fade_mm=1),
-    )
-    np.testing.assert_allclose(felt(dotted, [18.5, 18, 17.5]), [0, 0.5, 1], atol=1e-12)
-
-
 def test_a_blended_fill_goes_on_under_the_stroke_and_does_not_shine_through():
     weak = Stroke(width_mm=4, edge_mm=1, amplitude=0.3)
     fill = Fill(texture=Uniform(level=0.8), blended=True)
@@ -126,13 +85,3 @@ def test_the_largest_of_dots_counts():
         felt(dots, [0, 0.25, 0.5, 1, 3]),
         [0.6, *[0.6 * (0.5 + 0.5 * math.cos(math.pi * r)) for r in (0.25, 0.5)], 0.6, 0],
     )
-
-
-def test_dots_on_vertices_may_vibrate_alone():
-    square = Polygon(vertices_mm=SQUARE, dots=Dotting(vertex_vibration=Vibration()))
-    third = 30 / 10
-    np.testing.assert_allclose(felt(square, [0, third], time_s=0.015), [0, 1], atol=1e-9)
-    np.testing.assert_allclose(felt(square, [0, third], time_s=0.005), [1, 1], atol=1e-9)
-
-
-# Opacity: fig. 8.25

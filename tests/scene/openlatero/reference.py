@@ -484,36 +484,36 @@ def sliding(places, place, node, now):
     speed = moves(node)
     if not speed:
         return place, 1.0
-    (ax, ay), (bx, by) = places[0], places[-1]
-    length, spacing = math.dist(places[0], places[-1]), math.dist(places[0], places[1])
-    ux, uy = (bx - ax) / length, (by - ay) / length
-    _, along = to_segment(place, places[0], places[-1])
-    across = abs((place[1] - ay) * ux - (place[0] - ax) * uy)
-    from_begin, whole = along + spacing / 2, length + spacing
+    spacing = math.dist(places[0], places[1])
     radius = number(node.find("stroke"), "width", 10.0) / 2
-    if not 0 <= from_begin <= whole or across > radius:
-        return place, 0.0
-    free = spacing / 2 - radius
-    share = min(from_begin - free, whole - free - from_begin)
-    at = (whole + from_begin - speed * now.travelled(speed, whole)) % whole - spacing / 2
+    ends, free = (places[0], places[-1]), spacing / 2 - radius
+    return slid(ends, spacing / 2, (free, free), radius, speed, place, now) or (place, 0.0)
+
+
+def slid(ends, more, free, radius, speed, place, now):
+    """Where dots are looked at that slide along a line, and their share; None beyond them.
+
+    The line is longer by ``more`` at both ends, and of that nothing is shown as far as ``free``.
+    """
+    (ax, ay), (bx, by) = ends
+    length = math.dist(*ends)
+    ux, uy = (bx - ax) / length, (by - ay) / length
+    across = abs((place[1] - ay) * ux - (place[0] - ax) * uy)
+    at, whole = to_segment(place, *ends)[1] + more, length + 2 * more
+    if not 0 <= at <= whole or across > radius:
+        return None
+    share = min(at - free[0], whole - free[1] - at)
+    at = (whole + at - speed * now.travelled(speed, whole)) % whole - more
     return (ax + ux * at + uy * across, ay + uy * at - ux * across), min(max(share, 0.0), 1.0)
 
 
 def sliding_edge(start, end, spaces, cuts, radius, speed, place, now):
     """The same on an edge of a polygon, whose corners' dots stay; None beyond its own dots."""
-    length = math.dist(start, end)
-    spacing = length / spaces
-    ux, uy = (end[0] - start[0]) / length, (end[1] - start[1]) / length
-    _, along = to_segment(place, start, end)
-    across = abs((place[1] - start[1]) * ux - (place[0] - start[0]) * uy)
-    at, whole = along - spacing / 2, length - spacing
-    if not 0 <= at <= whole or across > radius or spaces < 2:
+    if spaces < 2:
         return None
-    before, after = (max(0.0, cut - spacing / 2) for cut in cuts)
-    share = min(at - before, whole - after - at)
-    at = (whole + at - speed * now.travelled(speed, whole)) % whole + spacing / 2
-    seen = (start[0] + ux * at + uy * across, start[1] + uy * at - ux * across)
-    return seen, min(max(share, 0.0), 1.0)
+    half = math.dist(start, end) / spaces / 2
+    free = [max(0.0, cut - half) for cut in cuts]
+    return slid((start, end), -half, free, radius, speed, place, now)
 
 
 def apart(node):
