@@ -12,7 +12,7 @@ import pytest
 from tests.sessions.sittings import MINI, SURE, made
 from vbraille.sessions.record.checking import check, salvage, sum_of
 from vbraille.sessions.record.record import Record, RecordError, read, reading
-from vbraille.sessions.record.ticks import TICK, read_ticks
+from vbraille.sessions.record.ticks import FIELDS, TICK, read_ticks
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +63,7 @@ def test_an_answer_and_its_ticks_are_one_transaction(tmp_path):
     record.append("answer", 1.0, trial, 1, answer="⠁⠉")
     copy = shutil.copy(sat.session.path, tmp_path / "copy.session")
     with reading(copy) as db:
-        np.testing.assert_array_equal(read_ticks(db, 1), ticks)
+        np.testing.assert_array_equal(read_ticks(db, 1, FIELDS), ticks)
     record.close()
     assert check(sat.session.path) == []
 

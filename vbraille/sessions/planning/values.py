@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import Annotated, Any, Literal
 
 from msgspec import Meta, structs
@@ -84,7 +83,6 @@ class Look(Table, frozen=True, kw_only=True):
         """Return the look that has these values, and the other's where there is none here."""
         return Look(**(other.given | self.given))
 
-    @lru_cache(maxsize=64)  # noqa: B019 - looks are small, and the same few are asked for
     def style(self, model: Model) -> BrailleStyle:
         """Return the model's style with these values.
 

@@ -22,32 +22,27 @@ TIME, *TIMED = (FIELDS.index(name) for name in ("time_ns", "device_ns", "shown_s
 
 
 def pack(ticks: NDArray[np.void]) -> bytes:
-    """Compress the differences of each field from tick to tick.
-
-    Clocks that go with the host's are kept as what they are ahead of it, in ns: nearly nothing.
-    """
+    """Compress the differences of each field from tick to tick, of other clocks to the host's."""
     words = ticks[[*FIELDS]].astype(TICK).view("<i8").reshape(-1, len(FIELDS)).T
     words[TIMED[-1]] = np.rint(1e9 * ticks["shown_s"])
     words[TIMED] -= words[TIME]
     return zlib.compress(np.diff(words, axis=1, prepend=0).tobytes(), 1)
 
 
-def unpack(fields: bytes, count: int, names: Sequence[str] = FIELDS) -> NDArray[np.void]:
+def unpack(fields: bytes, count: int, names: Sequence[str]) -> NDArray[np.void]:
     """Return the ticks of a blob, with some of the fields of `TICK`, as an array of [count]."""
-    at = [FIELDS.index(name) for name in names]
     # One field follows another: what comes after the last that is wanted stays compressed.
-    size = (max(at) + 1) * count * TICK["tick"].itemsize
+    size = 8 * count * (max(map(FIELDS.index, names)) + 1)
     words = np.frombuffer(zlib.decompressobj().decompress(fields, size), "<i8").reshape(-1, count)
     ticks = np.empty(count, [(name, TICK[name]) for name in names])
-    for name, place in zip(names, at, strict=True):
+    for name in names:
+        place = FIELDS.index(name)
         kept = words[place].cumsum() + (words[TIME].cumsum() if place in TIMED else 0)
         ticks[name] = kept / 1e9 if name == "shown_s" else kept.view(TICK[name])
     return ticks
 
 
-def read_ticks(
-    db: sqlite3.Connection, line: int, names: Sequence[str] = FIELDS
-) -> NDArray[np.void]:
+def read_ticks(db: sqlite3.Connection, line: int, names: Sequence[str]) -> NDArray[np.void]:
     """Return the ticks of a showing, with "line" and other fields of `TICK`, as an array of [n]."""
     # Showings are numbered in the order of time, so that the ticks of one stand together.
     query = """
@@ -66,4 +61,4 @@ def read_all(db: sqlite3.Connection, after: int, before: int) -> NDArray[np.void
 
 
 def _joined(blobs: Iterable[tuple[bytes, int]], names: Sequence[str]) -> NDArray[np.void]:
-    return np.concatenate([np.empty(0, TICK)[list(names)], *(unpack(*b, names) for b in blobs)])
+    return np.concatenate([np.empty(0, TICK)[[*names]], *(unpack(*b, names) for b in blobs)])

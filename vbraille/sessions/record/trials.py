@@ -225,8 +225,8 @@ class _Table:
         if "line" not in cue.data:
             reads = tried.of("read")
             return {"duration_s": round(reads[-1].t_s - cue.t_s, 6)} if reads else {}
-        edges, line = edges_mm(protocol, first), cue.data["line"]
-        ticks = read_ticks(db, line, WAY[:3])
+        edges = edges_mm(protocol, first)
+        ticks = read_ticks(db, cue.data["line"], WAY[:3])
         found = duration(ticks, edges[0], protocol.wanted.span_mm) if edges else None
         if found is None:
             return {}
