@@ -24,7 +24,7 @@ from vbraille.sessions.record.movement import describe, duration, pauses
 from vbraille.sessions.record.progress import Progress
 from vbraille.sessions.record.record import Content, reading
 from vbraille.sessions.record.record import read as read_record
-from vbraille.sessions.record.ticks import read_ticks
+from vbraille.sessions.record.ticks import FIELDS, read_ticks
 
 
 class Column(NamedTuple):
@@ -41,7 +41,7 @@ for _name, *_told, _of, _from in read_csv(Path(__file__).with_name("columns.csv"
     COLUMNS_OF.setdefault(_of, {})[_name] = Column(*_told)
     PLANNED |= {_name: _from} if _from else {}
 COLUMNS, OF_PASSAGES = COLUMNS_OF["all"], COLUMNS_OF["passages"]
-WAY = ("line", "time_ns", "x_mm", "vx_mm_s")  # of the ticks, what tells how a line was read
+WAY = ("line", "time_ns", "x_mm")  # of the ticks, what tells how a string was read
 # What may tell who a person is, or where the session was.
 PRIVATE = ("notes", "cue_time", "answer_time", "answers_from", "faults")
 
@@ -226,7 +226,7 @@ class _Table:
             reads = tried.of("read")
             return {"duration_s": round(reads[-1].t_s - cue.t_s, 6)} if reads else {}
         edges = edges_mm(protocol, first)
-        ticks = read_ticks(db, cue.data["line"], WAY[:3])
+        ticks = read_ticks(db, cue.data["line"], WAY)
         found = duration(ticks, edges[0], protocol.wanted.span_mm) if edges else None
         if found is None:
             return {}
@@ -254,7 +254,7 @@ class _Table:
             row["words_per_minute"] = round(60 * words / seconds, 3)
         lines = []
         for number, stimulus in enumerate(trial.stimuli):
-            ticks = read_ticks(db, shown[number], WAY)
+            ticks = read_ticks(db, shown[number], FIELDS)
             half_mm = protocol.style(stimulus.look).geometry.cell_pitch_mm / 2
             edge_mm = edges_mm(protocol, stimulus)[0]
             lines.append(pauses(ticks, edge_mm, protocol.wanted.span_mm, half_mm))
