@@ -296,6 +296,8 @@ class Recording:
                 return cls._read(file)
         except FileNotFoundError:
             raise InputError(f"there is no file {path}; check the name") from None
+        except BlockingIOError:
+            raise InputError(f"{path} is open in another program; close it there") from None
         except UNLIKE as error:
             raise InputError(f"{path} is no recording; give what vbraille render wrote") from error
 

@@ -141,3 +141,16 @@ def test_what_cannot_be_played_is_one_sentence(tmp_path):
     assert done.returncode == 2
     assert "cut.h5" in done.stderr
     assert done.stderr.count("\n") == 1
+
+
+def test_one_that_is_being_written_or_whose_times_go_back_is_said_to_be(tmp_path):
+    path = tmp_path / "changed.h5"
+    path.write_bytes(recorded().read_bytes())
+    with h5py.File(path, "r+") as file:
+        done = program.run("monitor", path)
+        assert done.returncode == 2
+        assert "open in another program" in done.stderr
+        file["t_s"][len(file["t_s"]) // 2 :] -= 1.0
+    for open_it in (open_recording, vbraille.Recording.open):
+        with pytest.raises(InputError, match="times of a recording must increase"):
+            open_it(path)

@@ -49,6 +49,8 @@ def open_recording(path: Path) -> Playback:
             found.locate(0.0)  # there is a whole frame, which later calls find at the worst
         except FileNotFoundError:
             raise InputError(f"there is no file {path}; check the name") from None
+        except BlockingIOError:
+            raise InputError(f"{path} is open in another program; close it there") from None
         except UNLIKE:
             raise InputError(
                 f"{path} is no recording, or is damaged; give what vbraille render wrote, or a "
@@ -72,6 +74,8 @@ class Rendered(Playback):
             raise ValueError("numbers and frames are not as many")
         if not count:
             raise InputError(f"{name} has no frame; there is nothing to play")
+        if (np.diff(found["t_s"]) < 0).any():
+            raise InputError("the times of a recording must increase")
         model = model_in(file)
         self.pieces = -(-count // _PIECE_FRAMES)
         self._rate_hz = model.display.rate_hz
