@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from tests.benchmarks.timing import Result, seconds, vbraille
 from tests.conftest import SEED
+from vbraille.errors import InputError
 from vbraille.sessions.planning.loading import load_protocol, shipped
 from vbraille.sessions.planning.plan import make_plan
 from vbraille.sessions.record import checking, record
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 KILLS, LONGEST_S = 300, 0.6
 ANSWERS, LONG, VIEWED = 200, 1000, 100_000
-PLANNED_SEEDS = 100
+PLANNED_SEEDS = 1000
 HEAD = 'name = "small"\ntitle = "Small"\nmodel = "vbd"\n[trial]\ngap_s = 0.0\n'
 LIST = '[design]\nkind = "list"\nstrings = ["ac", "ca", "aa", "cc"]\nblocks = 1\nrepeats = {}\n'
 SURE = '[question]\nkind = "detect"\nconfidence = {{ least = 1, most = 4 }}\n'
@@ -189,15 +190,14 @@ def _viewed(folder: Path) -> Iterator[Result]:
 
 
 def _planned() -> Result:
-    plans = {name: set() for name in shipped()}
-    for name, seen in plans.items():
+    """Plan all protocols that come with the program; their rules are held by tests of plans."""
+    names, refused = shipped(), 0
+    for name in names:
         protocol = load_protocol(name)
         for seed in range(PLANNED_SEEDS):
-            seen.add(str(make_plan(protocol, f"P{seed % 20 + 1:02}", seed).trials))
-    fewest = min(map(len, plans.values()))
-    return Result(
-        f"plans of all {len(plans)} protocols, {PLANNED_SEEDS} seeds each: refused; alike",
-        "0; 0",
-        f"0; {PLANNED_SEEDS - fewest} at most",
-        met=True,
-    )
+            try:
+                make_plan(protocol, f"P{seed % 20 + 1:02}", seed)
+            except InputError:
+                refused += 1
+    what = f"plans of all {len(names)} protocols, {PLANNED_SEEDS} seeds each, that are refused"
+    return Result(what, "0", f"{refused}", refused == 0)

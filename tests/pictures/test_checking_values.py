@@ -1,4 +1,4 @@
-"""What `vbraille scene check` says of the values of a picture, such as vibrations that meet."""
+"""Advice of `vbraille scene check` on the values of a picture, such as vibrations that meet."""
 
 from pathlib import Path
 

@@ -216,6 +216,6 @@ class Page:
         return self._given / (self.last - self.first + 1)
 
     def remarks(self) -> Iterator[str]:
-        """Notes on the text that are new, and sentences on what of the lines was not shown."""
+        """New notes on the text, and sentences on content of the lines that was not shown."""
         yield from self.layout.book.source.notes()
         yield from remarks(self.layout.book, self._seen)

@@ -25,7 +25,7 @@ _LOOK_S: Final = 0.02  # between looks at what is to be shown
 _CHECK_S: Final = 0.5  # writing to a display that was unplugged succeeds: it is asked for
 _END_S: Final = 2.0
 _SILENT_S: Final = 3.0  # after which what drives the display has stopped answering
-_KEPT_KEYS: Final = 100  # of those that no program has asked for
+_KEPT_KEYS: Final = 100  # key presses that wait to be taken
 _STILL: Final = "what drives the display does not answer; start it again, or give its address"
 
 

@@ -119,7 +119,7 @@ class Button(Event, frozen=True):
 
 
 def moved(before: int, now: int, count: int, at_ns: int) -> list[Event]:
-    """Tell of the buttons whose bits differ, of the first so many."""
+    """Return an event for each button whose bit has changed, among the first ``count``."""
     return [
         Button(bit + 1, pressed=bool(now >> bit & 1), at_ns=at_ns)
         for bit in range(count)

@@ -229,7 +229,7 @@ def usb_identity(path: str) -> tuple[object, ...] | None:
 
 
 def _plugged() -> dict[tuple[object, ...], str]:
-    """Ports of this computer, by what tells each from others; those without that are left out."""
+    """Ports of this computer that have a serial number, by maker, product, it and interface."""
     from serial.tools import list_ports
 
     return {

@@ -396,7 +396,7 @@ class _Part:
 
 
 class _Felt:
-    """A picture at one zoom, of which each part is looked at as it is felt by itself."""
+    """A picture at one zoom, with what can be felt of each of its parts alone."""
 
     def __init__(self, loaded: LoadedScene, elements: Sequence[ElementReport]) -> None:
         self._loaded, self._scene, self._elements = loaded, loaded.scene, elements

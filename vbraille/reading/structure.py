@@ -25,7 +25,7 @@ _MOST_LISTED = 100  # headings; of more, those of the upper levels are listed
 
 
 def _go(reader: Reader, step: int, thing: str, said: Callable[[Block], str]) -> None:
-    """Go to the next block of which something can be said, or to the one before."""
+    """Go to the next or previous block for which ``said`` has words, and say them."""
     place = reader.line.place
     for block in reader.book.source.blocks(reader.line.block.number, step):
         words = "" if block.continues else said(block)

@@ -480,7 +480,7 @@ class _Reading:
 
 
 def _grouped(operation: Operation, elements: Sequence[_Element]) -> _Element:
-    """Elements that are put together otherwise than those around them, as one."""
+    """Group of elements with an operation of their own."""
     places: _Places = {(): elements[0][1][()]}
     for number, (_, inner) in enumerate(elements):
         places |= {("parts", number, *steps): place for steps, place in inner.items()}

@@ -146,7 +146,7 @@ def _between_signs(own: BrailleTable, part: Written, tag: str, following: str) -
 
 
 def remarks(book: Book, blocks: Iterable[Block]) -> list[str]:
-    """Sentences on what of some blocks cannot be shown, and on what the table cannot write."""
+    """Sentences on content that cannot be shown, and on characters that the table lacks."""
     unshown: Counter[str] = Counter()
     written: defaultdict[Kind, Counter[str]] = defaultdict(Counter)
     for block in blocks:

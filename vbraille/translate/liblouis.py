@@ -30,7 +30,7 @@ class UnendingError(Exception):
 
 
 class _EndedError(UnendingError):
-    """The child has ended otherwise than by its limit of time."""
+    """The child has ended before its time was over."""
 
 
 class Answer(NamedTuple):

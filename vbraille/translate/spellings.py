@@ -33,7 +33,7 @@ class Undefined(StrEnum):
 
 
 class Kind(StrEnum):
-    """Way in which a part of a text is written otherwise than it stands, in words on the table."""
+    """Way in which a part of a text was respelled; the value completes a sentence on the table."""
 
     MARKED = f"does not know {{}}, marked in the text; {setting('undefined')} drop leaves them out"
     DROPPED = "does not know {}, left out"

@@ -382,7 +382,7 @@ def placed(dots: Sequence[PlacedDot], at: ActuatorPlaces) -> list[SeenDot]:
 def dots_deflection(
     dots: Sequence[SeenDot], dot: DotStyle, at: ActuatorPlaces, vertices: Vibration | None = None
 ) -> Values:
-    """Compute dots, of which the largest counts: 8.4.4.
+    """Compute dots; where they overlap, the largest deflection counts: 8.4.4.
 
     Those on vertices may have a vibration of their own.
     """

@@ -7,6 +7,7 @@ import pytest
 
 from tests.sessions.planning.test_protocols import load
 from tests.sessions.sittings import HEAD, MINI, WIDTHS
+from tests.tiers import by_tier
 from vbraille.errors import InputError
 from vbraille.sessions.planning.loading import load_protocol
 from vbraille.sessions.planning.order import balanced_orders
@@ -36,7 +37,7 @@ def in_blocks(plan):
 def test_orders_keep_their_rules(name):
     protocol = load_protocol(name)
     limits = {name: most + 1 for name, most in protocol.rules.at_most_running.items()}
-    for seed in range(40):
+    for seed in range(by_tier(40, 1000, 1000)):
         plan = make_plan(protocol, f"P{seed % 3 + 1}", seed)
         trials = [trial for trial in in_blocks(plan) if not trial.catch]
         shown = Counter((trial.item, trial.condition) for trial in trials)

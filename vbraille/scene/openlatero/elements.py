@@ -1,12 +1,14 @@
 """Elements of OpenLatero's files, read leniently by a table of what may stand in each.
 
-What is not understood, or is taken otherwise, is said. A row of the table has the name of an
-element, its kind, what is usual, its range where it is not that of the kind, and after ``>`` the
-name that it has in our scenes. Kinds are units, ``number`` for none, ``turn`` for an angle,
-``yesno``, ``place``, ``words`` of which the first is usual, with ours after ``=``, ``speed`` in a
-unit or in Hz, ``text``, ``pattern``, ``unused``, ``unshown``, of which that is said, and
-``patterns``, ``places`` and ``sounds``, of which there may be several; all others are names of
-parts. A part or a type may stand at several places.
+There is a remark on each value that is not understood, or is not taken as it is written. A row of
+the table has the name of an element, its kind, its default, its range where the kind has another,
+and after ``>`` its name in our scenes. The kinds:
+
+- a unit, or ``number``: a number; ``turn``: an angle; ``speed``: in a unit per second or in Hz;
+- ``yesno``, ``text``, ``place``, ``pattern``; ``patterns``, ``places``, ``sounds``: any number;
+- ``words``: one of some words, the first by default; after ``=`` our word;
+- ``unused``: read and left out; ``unshown``: left out with a remark;
+- any other: the name of a part of the table. A part or a type may stand in several blocks of it.
 """
 
 from __future__ import annotations
@@ -358,7 +360,7 @@ class Context:
 
 
 class Element:
-    """An element of a file; its attributes are the values that the table says it has in it.
+    """An element of a file; its attributes are the values that the table lists for it.
 
     Values are read when they are asked for. Those that are not in the file are as usual.
 

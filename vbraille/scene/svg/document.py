@@ -187,7 +187,7 @@ def _shown(tokens: Sequence[Any]) -> list[Any]:
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """Values of the properties of an element, and sizes that relative lengths in it are of.
+    """Values of the properties of an element, and the sizes to which its relative lengths refer.
 
     Parameters
     ----------
@@ -209,7 +209,7 @@ class Style:
 
     @property
     def diagonal(self) -> float:
-        """Length that percentages of lengths in no direction are of."""
+        """Length to which percentages refer where a length has no direction, such as a radius."""
         return math.hypot(*self.view) / math.sqrt(2)
 
     def length(self, text: str | None, whole: float) -> float | None:

@@ -289,7 +289,7 @@ class SvgDrawing:
         )
 
     def _lined(self, element: Element, patterns: Iterable[AnyPattern]) -> list[AnyPattern]:
-        """Patterns, which the line of an element is kept of."""
+        """Patterns of an element, after its line in the file was kept for them."""
         found = [*patterns]
         self.made |= {id(one): (one, element.sourceline or 0) for one in found}
         return found

@@ -195,7 +195,7 @@ class Question(Table, frozen=True, kw_only=True, tag_field="kind"):
         raise NotImplementedError
 
     def guesses(self, trial: Trial) -> Sequence[str]:
-        """Return answers of which one is given where nothing was felt."""
+        """Return the answers from which the simulated reader guesses if it felt nothing."""
         return sorted({*self.answers(trial).values()})
 
 
@@ -236,7 +236,7 @@ class Identify(Question, frozen=True, kw_only=True, tag="identify"):
         return to_braille(felt.cells())
 
     def guesses(self, trial: Trial) -> Sequence[str]:
-        """Return that no cell was read."""
+        """Return the answer in which no cell was read."""
         return [UNREAD * len(trial.cells)]
 
 
@@ -245,7 +245,7 @@ class Chosen(Question, frozen=True, kw_only=True):
 
     typed = "the number of one: 1, 2 and so on, or first, second"
     scores = True
-    among = len(ORDINALS)  # of how many of the first one is chosen
+    among = len(ORDINALS)  # stimuli that can be chosen: the first ones
 
     def answers(self, trial: Trial) -> dict[str, str]:
         """Return the numbers, by themselves and by their ordinals."""
@@ -657,7 +657,7 @@ class Free(Question, frozen=True, kw_only=True, tag="free"):
         return text.strip()
 
     def is_felt(self, parameter: str) -> bool:
-        """Tell that the simulated reader has no words."""
+        """Return False: the simulated reader has no words of its own."""
         return False
 
 

@@ -22,7 +22,10 @@ TIME, *TIMED = (FIELDS.index(name) for name in ("time_ns", "device_ns", "shown_s
 
 
 def pack(ticks: NDArray[np.void]) -> bytes:
-    """Compress the differences of each field from tick to tick, of other clocks to the host's."""
+    """Compress the differences of each field from tick to tick.
+
+    `TIMED` clocks are kept as their lead over ``time_ns``, which hardly changes.
+    """
     words = ticks[[*FIELDS]].astype(TICK).view("<i8").reshape(-1, len(FIELDS)).T
     words[TIMED[-1]] = np.rint(1e9 * ticks["shown_s"])
     words[TIMED] -= words[TIME]
