@@ -136,6 +136,15 @@ def test_what_can_be_read_of_a_damaged_file_is_saved(ended, tmp_path):
         salvage(torn, tmp_path / "saved.session")
 
 
+def test_what_was_copied_of_a_file_that_was_cut_is_saved(ended, tmp_path):
+    cut = tmp_path / "cut.session"
+    cut.write_bytes(ended.read_bytes()[: -2 * 4096])
+    assert check(cut)
+    salvage(cut, tmp_path / "saved.session")
+    with reading(tmp_path / "saved.session") as db:
+        assert db.execute("SELECT count(*) FROM event").fetchone()[0] > 3
+
+
 def test_the_view_of_answers_has_those_that_count(tmp_path):
     sat = made(tmp_path).sit(
         ("read:", "ac"), ("answer:", "undo"), ("undo:", "aa"), ("read:", "ca"),

@@ -47,8 +47,8 @@ def check(path: Path, expect: str = "") -> list[str]:
     sums: set[str] = set()
     try:
         with reading(path) as db:
-            result = [said for (said,) in db.execute("PRAGMA integrity_check")]
-            faults += [f"file: {said}" for said in result if said != "ok"]
+            result = db.execute("PRAGMA integrity_check")
+            faults += [f"file: {said}" for (said,) in result if said != "ok"]
             planned = db.execute("SELECT data FROM event WHERE n = 1").fetchone()
             if planned is None or json.loads(planned[0])["plan"] != plan_sum(db):
                 faults.append("the protocol or the plan was changed")
@@ -91,6 +91,7 @@ def salvage(path: Path, into: Path) -> list[str]:
         raise RecordError(f"{into} is there already; choose another name")
     said = []
     with told(path), closing(connect(path, "ro")) as db:
+        db.execute("PRAGMA writable_schema = ON")  # a file whose end is missing is opened, too
         rows = {table: _readable(db, table) for table in TABLES}
     if not any(rows.values()):
         raise RecordError(f"{path}: nothing of it can be read")
