@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from vbraille.display import Display
-from vbraille.render import STRESS2, VBD, Mapping, kernels
+from vbraille.render import STRESS2, VBD, Mapping, kernels, work
 from vbraille.render.braille.mappings import NONE
 from vbraille.render.program import Program
 from vbraille.render.work import NO_PART
@@ -23,7 +23,14 @@ def array_of(rows, columns, column_pitch_mm, row_pitch_mm) -> Display:
 
 def from_left(masks, style, display) -> Program:
     """A line on a display, for places of the left column as the twin has them."""
-    return style.render(masks, display).with_anchor(0.0)
+    return by_left_column(style.render(masks, display))
+
+
+def by_left_column(program) -> Program:
+    """The same program, for places of the array's left column in place of its centre."""
+    numbers = program.numbers.copy()
+    numbers[work.CENTER] = (program.shape[1] - 1) * numbers[work.COLUMN_PITCH] / 2
+    return Program(numbers, program.table)
 
 
 def full(display) -> Program:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tests.render.braille.reference import deflections
 from tests.render.scenes import JIT, examples
-from tests.shown import LATERO, part_of
+from tests.shown import LATERO, by_left_column, part_of
 from vbraille.render import MAPPINGS, STRESS2, VBD, Straying
 from vbraille.render.work import NO_PART, ProgramKind
 
@@ -136,8 +136,8 @@ def test_a_line_alone_has_one_part_wherever_the_array_is():
 @pytest.mark.parametrize("theta_rad", [0.2, -0.7, math.pi / 2, 3.0, 1e-9])
 def test_of_a_turned_array_each_actuator_is_at_its_own_place(style, display, theta_rad, rng):
     masks = rng.integers(1, 64, 5).astype(np.uint8)
-    line = style.render(masks, display).with_anchor(0.0)
-    page = style.render_page([masks, masks[::-1]], display).with_anchor(0.0)
+    line = by_left_column(style.render(masks, display))
+    page = by_left_column(style.render_page([masks, masks[::-1]], display))
     for x_mm in rng.uniform(-10, 50, 60 if JIT else 10):
         want = turned(style, display, masks, x_mm, theta_rad)
         got = frame_of(line, x_mm, theta_rad=theta_rad)

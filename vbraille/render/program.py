@@ -209,20 +209,6 @@ class Program:
         self._last = at[-1:].copy() if len(at) else self._last
         return parts[before:], out[before:]
 
-    def with_anchor(self, anchor_mm: float) -> Program:
-        """Make a program of the same braille for which another point of the array tells its place.
-
-        Parameters
-        ----------
-        anchor_mm
-            Distance of that point from the left column, to the right. Recordings until 2026-11-21
-            hold places of the left column itself, whose distance is 0.
-        """
-        numbers = self.numbers.copy()
-        span_mm = (self.shape[1] - 1) * numbers[work.COLUMN_PITCH]
-        numbers[work.CENTER] = span_mm / 2 - anchor_mm
-        return Program(numbers, self.table)
-
 
 def head(
     display: Display, kind: ProgramKind, places: int, own_y_mm: float = 0.0
