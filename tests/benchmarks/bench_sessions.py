@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 KILLS, LONGEST_S = 300, 0.6
-ANSWERS, LONG, VIEWED = 200, 1000, 100_000
+ANSWERS, PACED_ANSWERS, LONG, VIEWED = 200, 20, 1000, 100_000
 PLANNED_SEEDS = 1000
 HEAD = 'name = "small"\ntitle = "Small"\nmodel = "vbd"\n[trial]\ngap_s = 0.0\n'
 LIST = '[design]\nkind = "list"\nstrings = ["ac", "ca", "aa", "cc"]\nblocks = 1\nrepeats = {}\n'
@@ -121,19 +121,8 @@ def _until_killed(session: Session, after_s: float) -> tuple[list[str], int, boo
 
 
 def _confirmed(folder: Path) -> Iterator[Result]:
-    """Answer a session in real time, through pipes, and take the time to each confirmation."""
-    session = made(folder, LIST, ANSWERS // 4)
-    command = vbraille("session", "resume", str(session.path), "--hand", "sweep:1000")
-    how = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "bufsize": 1}
-    taken = []
-    with subprocess.Popen([*command, "--answers", "typed", "--cues", "none"], **how) as process:
-        for line in process.stdout:
-            if line.startswith(("read:", "last:")):
-                process.stdin.write("ac\n" if line.startswith("read:") else "\n")
-                process.stdin.flush()
-                began = time.perf_counter()
-            elif line.startswith("answer:"):
-                taken.append(1e3 * (time.perf_counter() - began))
+    """Answer sessions in real time: take the time to each confirmation, and the size of ticks."""
+    session, taken = _answered(folder, ANSWERS, "sweep:1000")
     middle, high = statistics.median(taken), statistics.quantiles(taken, n=100)[-1]
     yield Result(
         f"from a typed answer to its confirmation, which is on the disk, {len(taken)} answers in "
@@ -142,9 +131,32 @@ def _confirmed(folder: Path) -> Iterator[Result]:
         f"{middle:.1f}, {high:.1f} ms",
         middle <= 5 and high <= 40,
     )
+    yield _size(session, "ticks on the disk, of a hand of 1,000 mm/s, which is mostly in fades")
+    session, _ = _answered(folder, PACED_ANSWERS, "sweep:70", seed=2)
+    yield _size(session, "ticks on the disk, of a hand of 70 mm/s")
+
+
+def _answered(folder: Path, answers: int, hand: str, seed: int = 1) -> tuple[Session, list[float]]:
+    """Answer a session in real time, through pipes; the times to the confirmations, in ms."""
+    session = made(folder, LIST, answers // 4, seed)
+    command = vbraille("session", "resume", str(session.path), "--hand", hand)
+    how = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True, "bufsize": 1}
+    taken, began = [], 0.0
+    with subprocess.Popen([*command, "--answers", "typed", "--cues", "none"], **how) as process:
+        for line in process.stdout:
+            if line.startswith(("read:", "last:")):
+                process.stdin.write("ac\n" if line.startswith("read:") else "\n")
+                process.stdin.flush()
+                began = time.perf_counter()
+            elif line.startswith("answer:"):
+                taken.append(1e3 * (time.perf_counter() - began))
+    return session, taken
+
+
+def _size(session: Session, what: str) -> Result:
     with record.reading(session.path) as db:
         size, count = db.execute("SELECT sum(length(fields)), sum(count) FROM ticks").fetchone()
-    yield Result("ticks of it on the disk", "<= 18 B", f"{size / count:.1f} B", size / count <= 18)
+    return Result(what, "<= 18 B", f"{size / count:.1f} B", size / count <= 18)
 
 
 def _long(folder: Path) -> Iterator[Result]:
